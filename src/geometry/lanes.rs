@@ -1,0 +1,203 @@
+//! Lanes: a kernel's formula is written once over [`Lane`] and runs on one `f32` or on `W` of them.
+//!
+//! Every operation is the IEEE one, in the order written; nothing here fuses a multiplication with an addition, so a
+//! formula gives the same bits in every lane width and on every instruction set.
+//!
+//! Source: the trait follows the shape of the `Vector` trait of the memchr crate (one trait, one small type a width).
+//! Differs: masks are values of their own type, so that the scalar form compiles to plain branches.
+
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+
+use super::Vec3;
+
+/// The truth values of `W` comparisons.
+pub trait LaneMask:
+    Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self>
+{
+    /// Bit `i` is set where lane `i` is true.
+    fn bits(self) -> u32;
+
+    /// Whether any lane is true.
+    #[inline(always)]
+    fn any(self) -> bool {
+        self.bits() != 0
+    }
+}
+
+/// `W` numbers that are computed with at once.
+pub trait Lane<const W: usize>:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// The result of comparing two of these.
+    type Mask: LaneMask;
+
+    /// The same number in every lane.
+    fn splat(x: f32) -> Self;
+    /// One number a lane.
+    fn load(xs: &[f32; W]) -> Self;
+    /// One number a lane.
+    fn to_array(self) -> [f32; W];
+    /// Absolute value.
+    #[must_use]
+    fn abs(self) -> Self;
+    /// `a` where `mask` is true, else `b`.
+    fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
+    /// `self < other`, false where either is NaN.
+    fn lt(self, other: Self) -> Self::Mask;
+    /// `self <= other`, false where either is NaN.
+    fn le(self, other: Self) -> Self::Mask;
+    /// `self == other`, false where either is NaN.
+    fn eq(self, other: Self) -> Self::Mask;
+
+    /// `self > other`, false where either is NaN.
+    #[inline(always)]
+    fn gt(self, other: Self) -> Self::Mask {
+        other.lt(self)
+    }
+    /// `self >= other`, false where either is NaN.
+    #[inline(always)]
+    fn ge(self, other: Self) -> Self::Mask {
+        other.le(self)
+    }
+}
+
+impl LaneMask for bool {
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        u32::from(self)
+    }
+}
+
+impl Lane<1> for f32 {
+    type Mask = bool;
+
+    #[inline(always)]
+    fn splat(x: f32) -> Self {
+        x
+    }
+    #[inline(always)]
+    fn load(xs: &[f32; 1]) -> Self {
+        xs[0]
+    }
+    #[inline(always)]
+    fn to_array(self) -> [f32; 1] {
+        [self]
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self::abs(self)
+    }
+    #[inline(always)]
+    fn select(mask: bool, a: Self, b: Self) -> Self {
+        if mask { a } else { b }
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> bool {
+        self < other
+    }
+    #[inline(always)]
+    fn le(self, other: Self) -> bool {
+        self <= other
+    }
+    #[inline(always)]
+    fn eq(self, other: Self) -> bool {
+        self == other
+    }
+}
+
+/// A vector whose components are lanes.
+#[derive(Debug, Clone, Copy)]
+pub struct LaneVec3<L> {
+    /// First component.
+    pub x: L,
+    /// Second component.
+    pub y: L,
+    /// Third component.
+    pub z: L,
+}
+
+impl<L> LaneVec3<L> {
+    /// The same vector in every lane.
+    #[must_use]
+    #[inline(always)]
+    pub fn splat<const W: usize>(v: Vec3) -> Self
+    where
+        L: Lane<W>,
+    {
+        Self {
+            x: L::splat(v.x),
+            y: L::splat(v.y),
+            z: L::splat(v.z),
+        }
+    }
+
+    /// One vector a lane, from three rows of `W` components.
+    #[must_use]
+    #[inline(always)]
+    pub fn load<const W: usize>(rows: &[[f32; W]; 3]) -> Self
+    where
+        L: Lane<W>,
+    {
+        Self {
+            x: L::load(&rows[0]),
+            y: L::load(&rows[1]),
+            z: L::load(&rows[2]),
+        }
+    }
+
+    /// Componentwise difference.
+    #[inline(always)]
+    #[must_use]
+    pub fn minus<const W: usize>(self, o: Self) -> Self
+    where
+        L: Lane<W>,
+    {
+        Self {
+            x: self.x - o.x,
+            y: self.y - o.y,
+            z: self.z - o.z,
+        }
+    }
+
+    /// `self + o·s`.
+    #[inline(always)]
+    #[must_use]
+    pub fn add_scaled<const W: usize>(self, o: Self, s: L) -> Self
+    where
+        L: Lane<W>,
+    {
+        Self {
+            x: self.x + o.x * s,
+            y: self.y + o.y * s,
+            z: self.z + o.z * s,
+        }
+    }
+
+    /// Cross product, each component as fl(fl(ab) − fl(cd)).
+    #[inline(always)]
+    #[must_use]
+    pub fn cross<const W: usize>(self, o: Self) -> Self
+    where
+        L: Lane<W>,
+    {
+        Self {
+            x: self.y * o.z - self.z * o.y,
+            y: self.z * o.x - self.x * o.z,
+            z: self.x * o.y - self.y * o.x,
+        }
+    }
+
+    /// Dot product, summed as (x + y) + z.
+    #[inline(always)]
+    pub fn dot<const W: usize>(self, o: Self) -> L
+    where
+        L: Lane<W>,
+    {
+        self.x * o.x + self.y * o.y + self.z * o.z
+    }
+}

@@ -1,0 +1,131 @@
+//! Kernels: ray/triangle intersection methods, each one file, written once over a lane type.
+//!
+//! A kernel owns the precision and alone decides what is a hit. It packs triangles for its own test, prepares a ray
+//! once, and answers for `W` triangles at a time. Kernels know nothing of structures, of other triangles, or of which
+//! hit is the nearest.
+//!
+//! To add one: a file here, and a row in [`kernels!`] below.
+
+use std::fmt::Debug;
+
+use serde::Serialize;
+
+use crate::geometry::lanes::Lane;
+use crate::geometry::{Ray, Vec3};
+use crate::registry::{Choice, ChoiceError, ParamSpec};
+
+mod moller_trumbore;
+
+pub use moller_trumbore::MollerTrumbore;
+
+/// What a kernel answers for `W` triangles.
+#[derive(Debug, Clone, Copy)]
+pub struct LaneHit<const W: usize, L: Lane<W>> {
+    /// Which lanes are hit, whatever their `t`.
+    pub mask: L::Mask,
+    /// Ray parameter; meaningless where `mask` is false.
+    pub t: L,
+    /// Barycentric weight of vertex 1; meaningless where `mask` is false.
+    pub u: L,
+    /// Barycentric weight of vertex 2; meaningless where `mask` is false.
+    pub v: L,
+}
+
+/// A ray/triangle intersection method.
+pub trait Kernel: Debug + Clone + Send + Sync + 'static {
+    /// `W` triangles in the form that the test reads.
+    type Packed<const W: usize>: Debug + Clone + Send + Sync;
+    /// A ray in the form that the test reads, made once a ray.
+    type Prepared<const W: usize, L: Lane<W>>: Copy;
+
+    /// Packs the triangles whose corners `corners(lane)` gives.
+    fn pack<const W: usize>(&self, corners: impl Fn(usize) -> [Vec3; 3]) -> Self::Packed<W>;
+
+    /// Prepares a valid ray.
+    fn prepare<const W: usize, L: Lane<W>>(&self, ray: &Ray) -> Self::Prepared<W, L>;
+
+    /// Tests the ray's whole line against `W` triangles; `None` only if no lane is hit.
+    ///
+    /// The caller compares `t` with the ray's interval. A NaN `t` is never accepted by those comparisons.
+    fn intersect<const W: usize, L: Lane<W>>(
+        &self,
+        ray: &Self::Prepared<W, L>,
+        triangles: &Self::Packed<W>,
+    ) -> Option<LaneHit<W, L>>;
+
+    /// A bound on the absolute error of the `t` that this kernel computed for one triangle it accepted.
+    ///
+    /// Traversals stop only beyond `t + t_error`, so an error of the kernel never makes them miss a nearer triangle.
+    /// Asked once an accepted hit, not once a test. May be infinite, never NaN.
+    fn t_error(&self, ray: &Ray, corners: &[Vec3; 3], t: f32) -> f32;
+}
+
+/// A row of the kernel registry.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct KernelEntry {
+    /// Kebab-case name.
+    pub name: &'static str,
+    /// One sentence.
+    pub about: &'static str,
+    /// Where it was published.
+    pub paper: &'static str,
+    /// Whether no ray slips between triangles that share an edge or vertex.
+    pub watertight: bool,
+    /// Bytes kept for each triangle.
+    pub bytes_per_triangle: usize,
+    /// What one test costs: multiplications, additions, divisions.
+    pub operations: &'static str,
+    /// Where it is known to fail.
+    pub known_failures: &'static str,
+    /// Parameters.
+    pub params: &'static [ParamSpec],
+}
+
+/// Three rows of `W` components from one vector a lane.
+fn rows<const W: usize>(vector: impl Fn(usize) -> Vec3) -> [[f32; W]; 3] {
+    let vectors: [Vec3; W] = std::array::from_fn(vector);
+    std::array::from_fn(|axis| std::array::from_fn(|lane| vectors[lane][axis]))
+}
+
+/// Something that is done with a kernel whose type is known.
+pub trait KernelUser {
+    /// What it gives.
+    type Out;
+    /// Does it.
+    fn with<K: Kernel>(self, kernel: K) -> Self::Out;
+}
+
+/// Makes [`KERNELS`] and [`dispatch`] from one row a kernel.
+macro_rules! kernels {
+    ($($kernel:ty),* $(,)?) => {
+        /// All kernels, in the order in which they are listed.
+        pub const KERNELS: &[KernelEntry] = &[$(<$kernel>::ENTRY),*];
+
+        /// Hands the kernel that `choice` names to `user`: the one place where a name becomes a type.
+        ///
+        /// # Errors
+        /// `choice` names no kernel.
+        pub fn dispatch<U: KernelUser>(choice: &Choice, user: U) -> Result<U::Out, ChoiceError> {
+            match choice.name.as_str() {
+                $(name if name == <$kernel>::ENTRY.name => Ok(user.with(<$kernel>::from_params(&choice.params))),)*
+                name => Err(ChoiceError::unknown("kernel", name, KERNELS.iter().map(|k| k.name))),
+            }
+        }
+    };
+}
+
+kernels![MollerTrumbore];
+
+/// Reads `name` or `name:key=value…`.
+///
+/// # Errors
+/// An unknown name, parameter or value.
+pub fn parse(text: &str) -> Result<Choice, ChoiceError> {
+    Choice::parse("kernel", text, KERNELS.iter().map(|k| (k.name, k.params)))
+}
+
+/// The row that `choice` names.
+#[must_use]
+pub fn entry(choice: &Choice) -> Option<&'static KernelEntry> {
+    KERNELS.iter().find(|k| k.name == choice.name)
+}

@@ -1,0 +1,2 @@
+//! raylab
+fn main() {}

@@ -1,0 +1,1 @@
+//! The terminal lab: pure state, update, view.

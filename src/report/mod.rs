@@ -1,5 +1,8 @@
 //! Reports: the schema, the journal, exports and plots.
 
+#[cfg(test)]
+pub(crate) mod fixture;
 mod model;
+pub mod series;
 
 pub use model::{Provenance, Report, Run, SceneFacts};

@@ -1,7 +1,7 @@
 //! Reports that look measured, for tests of what is made from reports. Deterministic: no clock, no random source.
 
 use crate::accel::{Prediction, StructureStats};
-use crate::lab::{Budget, Checksum, NRule, PerRay, Plan, Spread};
+use crate::lab::{Budget, Checksum, NRule, PerRay, Plan, Spread, StopReason};
 use crate::registry::Params;
 use crate::stats::Summary;
 
@@ -93,6 +93,7 @@ pub fn run_of(
         build_ms: summary(model.build, 0.08, &format!("{words}/build")),
         memory_bytes: model.bytes as u64,
         mrays_per_s: summary(speed, 0.05, &words),
+        stopped_by: StopReason::Interval,
         per_ray: PerRay {
             steps: spread(model.steps),
             empty_steps: spread(model.steps * 0.6),
@@ -113,6 +114,7 @@ pub fn run_of(
         valid: true,
         checked_rays: 4_096,
         kernel_errors: 0,
+        accuracy: None,
         warnings: Vec::new(),
     }
 }

@@ -5,4 +5,4 @@ pub(crate) mod fixture;
 mod model;
 pub mod series;
 
-pub use model::{Provenance, Report, Run, SceneFacts};
+pub use model::{Accuracy, AccuracyBounds, Provenance, Report, Run, SceneFacts, UlpSpread};

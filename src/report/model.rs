@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::accel::{Prediction, StructureStats};
-use crate::lab::{Checksum, PerRay, Plan};
+use crate::lab::{Checksum, PerRay, Plan, StopReason};
 use crate::registry::Params;
 use crate::stats::Summary;
 
@@ -104,6 +104,9 @@ pub struct Run {
     pub memory_bytes: u64,
     /// Speed.
     pub mrays_per_s: Summary,
+    /// What ended the sampling.
+    #[serde(default)]
+    pub stopped_by: StopReason,
     /// Counted work.
     pub per_ray: PerRay,
     /// Sizes and shape.
@@ -119,6 +122,52 @@ pub struct Run {
     pub checked_rays: u64,
     /// Rays on which the kernel itself errs and the answers differ.
     pub kernel_errors: u64,
+    /// How often the kernel was wrong by the oracle, where that was measured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub accuracy: Option<Accuracy>,
     /// What a reader should know.
     pub warnings: Vec<String>,
+}
+
+/// How often a kernel was wrong on some rays, by the oracle.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Accuracy {
+    /// Rays that were judged.
+    pub rays: u64,
+    /// The ray hits, the method misses.
+    pub leaks: u64,
+    /// The method hits, the ray misses.
+    pub phantoms: u64,
+    /// Another triangle than any nearest one, at another t.
+    pub wrong_surface: u64,
+    /// Another triangle than any nearest one, on the same surface.
+    pub neighbour_swaps: u64,
+    /// Error of t over right hits, in units of the last place.
+    pub t_ulp: UlpSpread,
+    /// Upper ends of the 95 % intervals of the rates.
+    pub upper95: AccuracyBounds,
+}
+
+/// Percentiles of an error in units of the last place.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct UlpSpread {
+    /// Median.
+    pub p50: f64,
+    /// 99th percentile.
+    pub p99: f64,
+    /// Greatest.
+    pub max: f64,
+}
+
+/// Upper bounds of rates, 0 to 1.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct AccuracyBounds {
+    /// Of leaks.
+    pub leaks: f64,
+    /// Of phantoms.
+    pub phantoms: f64,
+    /// Of wrong surfaces.
+    pub wrong_surface: f64,
+    /// Of neighbour swaps.
+    pub neighbour_swaps: f64,
 }

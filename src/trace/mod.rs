@@ -23,4 +23,6 @@ pub struct RaySet {
     pub query: Query,
     /// The rays; neighbours in the list are neighbours in space where the set has any order.
     pub rays: Vec<Ray>,
+    /// What a reader of figures from this set should know, one sentence each.
+    pub warnings: Vec<String>,
 }

@@ -45,6 +45,9 @@ pub trait Lane<const W: usize>:
     /// Absolute value.
     #[must_use]
     fn abs(self) -> Self;
+    /// Square root, correctly rounded; NaN where negative.
+    #[must_use]
+    fn sqrt(self) -> Self;
     /// `a` where `mask` is true, else `b`.
     fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
     /// `self < other`, false where either is NaN.
@@ -91,6 +94,10 @@ impl Lane<1> for f32 {
     #[inline(always)]
     fn abs(self) -> Self {
         Self::abs(self)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self::sqrt(self)
     }
     #[inline(always)]
     fn select(mask: bool, a: Self, b: Self) -> Self {
@@ -164,6 +171,20 @@ impl<L> LaneVec3<L> {
         }
     }
 
+    /// `self·s`.
+    #[inline(always)]
+    #[must_use]
+    pub fn scaled<const W: usize>(self, s: L) -> Self
+    where
+        L: Lane<W>,
+    {
+        Self {
+            x: self.x * s,
+            y: self.y * s,
+            z: self.z * s,
+        }
+    }
+
     /// `self + o·s`.
     #[inline(always)]
     #[must_use]
@@ -199,5 +220,14 @@ impl<L> LaneVec3<L> {
         L: Lane<W>,
     {
         self.x * o.x + self.y * o.y + self.z * o.z
+    }
+
+    /// Euclidean length.
+    #[inline(always)]
+    pub fn length<const W: usize>(self) -> L
+    where
+        L: Lane<W>,
+    {
+        self.dot(self).sqrt()
     }
 }

@@ -14,9 +14,17 @@ use crate::geometry::lanes::Lane;
 use crate::geometry::{Ray, Vec3};
 use crate::registry::{Choice, ChoiceError, ParamSpec};
 
+mod error;
 mod moller_trumbore;
+mod sheet;
+mod sheet_signed;
+mod sheet_unsigned;
+mod woop;
 
 pub use moller_trumbore::MollerTrumbore;
+pub use sheet_signed::SheetSigned;
+pub use sheet_unsigned::SheetUnsigned;
+pub use woop::Woop;
 
 /// What a kernel answers for `W` triangles.
 #[derive(Debug, Clone, Copy)]
@@ -114,7 +122,12 @@ macro_rules! kernels {
     };
 }
 
-kernels![MollerTrumbore];
+kernels![
+    SheetSigned<false>,
+    SheetUnsigned<false>,
+    MollerTrumbore,
+    Woop
+];
 
 /// Reads `name` or `name:key=value…`.
 ///

@@ -5,9 +5,10 @@
 //! determinant (a ray parallel to the triangle, or a triangle without area) is a miss, nothing else is.
 
 use crate::geometry::lanes::{Lane, LaneMask, LaneVec3};
-use crate::geometry::{Ray, Vec3, gamma};
+use crate::geometry::{DVec3, Ray, Vec3};
 use crate::registry::Params;
 
+use super::error::{self, HUGE, Quotient, TINY, gamma};
 use super::{Kernel, KernelEntry, LaneHit};
 
 /// The kernel `moller-trumbore`.
@@ -94,14 +95,22 @@ impl Kernel for MollerTrumbore {
     }
 
     fn t_error(&self, ray: &Ray, corners: &[Vec3; 3], t: f32) -> f32 {
-        // First-order bound on numerator and determinant, each a sum of six products of three rounded factors.
-        let [e1, e2] = [corners[1] - corners[0], corners[2] - corners[0]];
-        let det = e1.dot(ray.dir.cross(e2)).abs();
-        let edges = e1.abs().max_element() * e2.abs().max_element();
-        let reach =
-            (ray.origin - corners[0]).abs().max_element() + t.abs() * ray.dir.abs().max_element();
-        let error = gamma(12) * 6.0 * edges * reach / det + gamma(4) * t.abs();
-        // No determinant to speak of, or numbers at the end of the range: nothing is known about t.
-        if error.is_nan() { f32::INFINITY } else { error }
+        let [a, b, c] = error::relative(corners, ray.origin);
+        let (e1, e2, dir) = (b - a, c - a, ray.dir.as_dvec3());
+        // Sums of six products of three factors, each a difference: eight roundings, seven where the direction is exact.
+        let numerator = error::permanent(a, e1, e2);
+        let denominator = error::permanent(dir, e1, e2);
+        if numerator.max(denominator) > HUGE {
+            return f32::INFINITY;
+        }
+        let underflow = |v: DVec3| TINY * (3.0 + 2.0 * v.abs().element_sum());
+        Quotient {
+            numerator_error: gamma(8) * numerator + underflow(e2),
+            denominator: e1.dot(dir.cross(e2)),
+            denominator_error: gamma(7) * denominator + underflow(e1),
+            t: f64::from(t),
+            roundings: 2,
+        }
+        .t_error()
     }
 }

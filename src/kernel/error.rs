@@ -1,0 +1,73 @@
+//! Bounds on rounding errors, evaluated in `f64`, where neither they nor what they bound can overflow.
+//!
+//! The bounds are proven for the operations a kernel performs, underflow included: Higham's γ(n) for n chained
+//! roundings, and [`TINY`] for each product that underflows. What is neglected is the rounding of the bound itself,
+//! 2⁻²⁹ of it, for which [`round_up`] leaves room.
+//!
+//! **Source:** N. Higham, "Accuracy and Stability of Numerical Algorithms", §3.1; M. Pharr, W. Jakob and G. Humphreys,
+//! "Physically Based Rendering", 4th edition, §6.8.
+
+use crate::geometry::{DVec3, Vec3};
+
+/// Most that one `f32` product or quotient loses by underflow: half the least subnormal, doubled for safety.
+pub(super) const TINY: f64 = 1.401_298_464_324_817e-45;
+
+/// Where an intermediate of a kernel may be larger, nothing is known: it could have become infinite, or its reciprocal
+/// subnormal.
+pub(super) const HUGE: f64 = 1e37;
+
+/// γ(n) for `f32` roundings.
+pub(super) const fn gamma(n: u32) -> f64 {
+    let nu = n as f64 * 5.960_464_477_539_063e-8;
+    nu / (1.0 - nu)
+}
+
+/// Sum of the absolute values of the six products in the determinant of `a`, `b` and `c`.
+pub(super) fn permanent(a: DVec3, b: DVec3, c: DVec3) -> f64 {
+    let [a, b, c] = [a.abs(), b.abs(), c.abs()];
+    a.x * (b.y * c.z + b.z * c.y) + a.y * (b.z * c.x + b.x * c.z) + a.z * (b.x * c.y + b.y * c.x)
+}
+
+/// The corners relative to `origin`, in `f64`.
+pub(super) fn relative(corners: &[Vec3; 3], origin: Vec3) -> [DVec3; 3] {
+    corners.map(|v| v.as_dvec3() - origin.as_dvec3())
+}
+
+/// A numerator and a denominator that were computed with errors, and their quotient `t`.
+pub(super) struct Quotient {
+    /// Bound on the numerator's error.
+    pub numerator_error: f64,
+    /// The denominator in `f64`.
+    pub denominator: f64,
+    /// Bound on the error of the `f32` denominator.
+    pub denominator_error: f64,
+    /// The quotient that was computed.
+    pub t: f64,
+    /// Roundings between the two and `t`.
+    pub roundings: u32,
+}
+
+impl Quotient {
+    /// Bound on the error of `t`, with room for rounding `t + bound`; infinite where nothing is known.
+    ///
+    /// From t̂·D̂ = N̂ follows t̂ − N/D = (N̂ − N + t̂·(D − D̂)) / D.
+    pub(super) fn t_error(&self) -> f32 {
+        // The f64 denominator is off by far less than a millionth of the f32 one's bound.
+        let denominator = self.denominator.abs() - 1e-6 * self.denominator_error;
+        if denominator <= 0.0 {
+            return f32::INFINITY;
+        }
+        let carried = (self.numerator_error + self.t.abs() * self.denominator_error) / denominator;
+        // A reciprocal that is subnormal loses up to TINY, times the numerator t·D.
+        let reciprocal = TINY * (1.0 + (self.t * self.denominator).abs());
+        round_up(carried + gamma(self.roundings + 1) * self.t.abs() + reciprocal)
+    }
+}
+
+/// The bound in `f32`, not less; NaN becomes infinity.
+pub(super) fn round_up(bound: f64) -> f32 {
+    if bound.is_nan() {
+        return f32::INFINITY;
+    }
+    ((bound * (1.0 + 1e-6)) as f32).next_up()
+}

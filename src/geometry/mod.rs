@@ -5,10 +5,12 @@
 mod aabb;
 pub mod lanes;
 mod ray;
+mod surface;
 
 pub use aabb::Aabb;
 pub use glam::{DVec3, Vec3};
 pub use ray::{Hit, Ray};
+pub use surface::{SurfacePoint, unit_normal};
 
 /// Bound on the relative error of `n` chained `f32` operations: n·u / (1 − n·u) with u = 2⁻²⁴.
 ///

@@ -6,13 +6,21 @@
 use std::sync::Arc;
 
 use serde::Serialize;
+use sha2::{Digest, Sha256};
 
 use crate::geometry::Vec3;
+use crate::registry::ParamSpec;
 
 mod camera;
+mod catalog;
+mod error;
+pub mod family;
 mod mesh;
+mod obj;
 
 pub use camera::Camera;
+pub use catalog::{MAX_TRIANGLES, SCENES, Sizes, check, load};
+pub use error::SceneError;
 pub use mesh::{Mesh, MeshError};
 
 /// What reflects light at a triangle, as MTL states it.
@@ -104,6 +112,67 @@ pub struct SceneEntry {
     pub about: &'static str,
     /// How sizes are written, e.g. `N[,s]`; empty for scenes without a size.
     pub size: &'static str,
+    /// The sizes in the order in which they are written, with bounds and defaults; an empty default means "none".
+    pub params: &'static [ParamSpec],
     /// An example spec, small enough for tests.
     pub example: &'static str,
+    /// Whether no ray can hit the scene.
+    pub blind: bool,
+    /// How many triangles the scene will have.
+    #[serde(skip)]
+    pub triangles: fn(&Sizes) -> u64,
+    /// Builds the scene; its name and sentence are filled in by [`load`].
+    #[serde(skip)]
+    pub build: fn(&Sizes) -> Result<Scene, SceneError>,
+}
+
+/// SHA-256 of a mesh in lowercase hexadecimal: numbers of vertices and triangles, vertices, triangles, little-endian.
+///
+/// Depends on the mesh alone, so it is the same on every machine for the same mesh, bit for bit.
+#[must_use]
+pub fn hash(mesh: &Mesh) -> String {
+    let mut sha = Sha256::new();
+    sha.update((mesh.vertices().len() as u64).to_le_bytes());
+    sha.update((mesh.len() as u64).to_le_bytes());
+    // In blocks, because hashing a few bytes at a time costs several times as much.
+    let mut block = Vec::with_capacity(12 << 10);
+    let mut flush = |block: &mut Vec<u8>, at_least: usize| {
+        if block.len() >= at_least {
+            sha.update(&*block);
+            block.clear();
+        }
+    };
+    for vertex in mesh.vertices() {
+        block.extend(vertex.to_array().into_iter().flat_map(f32::to_le_bytes));
+        flush(&mut block, 12 << 10);
+    }
+    for triangle in mesh.triangles() {
+        block.extend(triangle.iter().flat_map(|i| i.to_le_bytes()));
+        flush(&mut block, 12 << 10);
+    }
+    flush(&mut block, 0);
+    format!("{:x}", sha.finalize())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_hash_of_the_empty_mesh_is_that_of_sixteen_zero_bytes() {
+        assert_eq!(
+            hash(&load("empty").unwrap().mesh),
+            "374708fff7719dd5979ec875d56cd2286f6d3cf7ec317a3b25632aab28ec37bb"
+        );
+    }
+
+    #[test]
+    fn meshes_that_differ_in_one_bit_have_different_hashes() {
+        let mesh = |x: f32| {
+            let vertices = vec![Vec3::ZERO, Vec3::X, Vec3::new(x, 1.0, 0.0)];
+            Mesh::new(vertices, vec![[0, 1, 2]]).unwrap()
+        };
+        assert_eq!(hash(&mesh(0.0)), hash(&mesh(0.0)));
+        assert_ne!(hash(&mesh(0.0)), hash(&mesh(-0.0)));
+    }
 }

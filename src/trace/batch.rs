@@ -1,0 +1,126 @@
+//! Batches: a ray set is cut into slices of [`BATCH`] rays, which the threads of the current rayon pool take in turn.
+//!
+//! Answers land at their ray's index, so they do not depend on the number of threads.
+
+use rayon::prelude::*;
+
+use crate::accel::{Accelerator, Counts};
+use crate::geometry::{Hit, Ray};
+
+/// Rays of a batch: a tile of 32 × 32 pixels, long enough (0.1 ms) that handing it to a thread costs nothing.
+pub const BATCH: usize = 1024;
+
+/// The nearest hit of each ray.
+#[must_use]
+pub fn closest(accel: &dyn Accelerator, rays: &[Ray]) -> Vec<Hit> {
+    let mut hits = vec![Hit::MISS; rays.len()];
+    closest_into(accel, rays, &mut hits);
+    hits
+}
+
+/// As [`closest`], into `hits`, which is as long as `rays`: what timed samples call.
+pub fn closest_into(accel: &dyn Accelerator, rays: &[Ray], hits: &mut [Hit]) {
+    each(rays, hits, |rays, hits| accel.closest(rays, hits));
+}
+
+/// Whether anything lies within each ray's interval.
+#[must_use]
+pub fn occluded(accel: &dyn Accelerator, rays: &[Ray]) -> Vec<bool> {
+    let mut blocked = vec![false; rays.len()];
+    occluded_into(accel, rays, &mut blocked);
+    blocked
+}
+
+/// As [`occluded`], into `blocked`, which is as long as `rays`: what timed samples call.
+pub fn occluded_into(accel: &dyn Accelerator, rays: &[Ray], blocked: &mut [bool]) {
+    each(rays, blocked, |rays, blocked| accel.occluded(rays, blocked));
+}
+
+/// As [`closest`], with the work of each ray.
+#[must_use]
+pub fn closest_counted(accel: &dyn Accelerator, rays: &[Ray]) -> (Vec<Hit>, Vec<Counts>) {
+    let mut hits = vec![Hit::MISS; rays.len()];
+    let counts = counted(rays, &mut hits, |rays, hits, counts| {
+        accel.closest_counted(rays, hits, counts);
+    });
+    (hits, counts)
+}
+
+/// As [`occluded`], with the work of each ray.
+#[must_use]
+pub fn occluded_counted(accel: &dyn Accelerator, rays: &[Ray]) -> (Vec<bool>, Vec<Counts>) {
+    let mut blocked = vec![false; rays.len()];
+    let counts = counted(rays, &mut blocked, |rays, blocked, counts| {
+        accel.occluded_counted(rays, blocked, counts);
+    });
+    (blocked, counts)
+}
+
+/// Calls `trace` for each batch. With one thread rayon is not involved at all.
+fn each<T: Send>(rays: &[Ray], answers: &mut [T], trace: impl Fn(&[Ray], &mut [T]) + Sync) {
+    if rayon::current_num_threads() == 1 {
+        for (rays, answers) in rays.chunks(BATCH).zip(answers.chunks_mut(BATCH)) {
+            trace(rays, answers);
+        }
+    } else {
+        rays.par_chunks(BATCH)
+            .zip(answers.par_chunks_mut(BATCH))
+            .for_each(|(rays, answers)| trace(rays, answers));
+    }
+}
+
+/// Calls `trace` for each batch and gives the work of each ray.
+fn counted<T: Send>(
+    rays: &[Ray],
+    answers: &mut [T],
+    trace: impl Fn(&[Ray], &mut [T], &mut [Counts]) + Sync,
+) -> Vec<Counts> {
+    let mut counts = vec![Counts::default(); rays.len()];
+    rays.par_chunks(BATCH)
+        .zip(answers.par_chunks_mut(BATCH))
+        .zip(counts.par_chunks_mut(BATCH))
+        .for_each(|((rays, answers), counts)| trace(rays, answers, counts));
+    counts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{fixture, ray_set};
+    use super::*;
+
+    #[test]
+    fn answers_and_counts_do_not_depend_on_the_number_of_threads() {
+        let scene = fixture::floor_and_ceiling();
+        let rays = ray_set(&scene, "random", 5000, 3).unwrap().rays;
+        let brute = fixture::brute(&scene);
+        let trace = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+            pool.build().unwrap().install(|| {
+                (
+                    closest(&*brute, &rays),
+                    closest_counted(&*brute, &rays),
+                    occluded(&*brute, &rays),
+                    occluded_counted(&*brute, &rays),
+                )
+            })
+        };
+        let one = trace(1);
+        assert_eq!(one, trace(3));
+        assert_eq!(one.0, one.1.0);
+        assert_eq!(one.2, one.3.0);
+        assert!(
+            one.0
+                .iter()
+                .zip(&one.2)
+                .all(|(hit, blocked)| hit.is_hit() == *blocked)
+        );
+        assert!(one.0.iter().any(Hit::is_hit) && one.0.iter().any(|h| !h.is_hit()));
+    }
+
+    #[test]
+    fn no_rays_are_no_answers() {
+        let brute = fixture::brute(&fixture::empty());
+        assert!(closest(&*brute, &[]).is_empty());
+        assert!(occluded_counted(&*brute, &[]).1.is_empty());
+    }
+}

@@ -27,10 +27,16 @@ use crate::registry::{Choice, ChoiceError, ParamSpec, Params};
 use crate::scene::Mesh;
 
 mod brute;
+mod bvh;
+mod sah;
+mod slab;
+#[cfg(test)]
+mod testbed;
 mod traced;
 mod visit;
 
 pub use brute::Brute;
+pub use bvh::Bvh;
 pub use traced::finish;
 pub use visit::{Counts, Visitor};
 
@@ -185,7 +191,7 @@ pub struct AcceleratorEntry {
 }
 
 /// All accelerators, in the order in which they are listed.
-pub const ACCELERATORS: &[AcceleratorEntry] = &[brute::ENTRY];
+pub const ACCELERATORS: &[AcceleratorEntry] = &[brute::ENTRY, bvh::ENTRY];
 
 /// Greatest accepted n; DESIGN asks for 512, the format of the cells allows this.
 pub const MAX_N: u32 = 1024;

@@ -33,11 +33,13 @@ impl SurfacePoint {
         let v = v.max(0.0).min(1.0 - u);
         let parts = [corners[0] * (1.0 - u - v), corners[1] * u, corners[2] * v];
         let rounded = parts[0].abs() + parts[1].abs() + parts[2].abs();
-        // A kernel looks back at the triangle over the distance to its corners.
-        let seen = (corners[1] - corners[0]).abs() * u + (corners[2] - corners[0]).abs() * v;
+        // A kernel looks back at the triangle over the distance to its corners, and mixes the axes in doing so: on a
+        // plane like y = 0 every coordinate along y is exact, and the start must still not lie in the plane.
+        let [e1, e2] = [corners[1] - corners[0], corners[2] - corners[0]];
+        let seen = e1.abs().max(e2.abs()).max_element();
         Self {
             position: parts[0] + parts[1] + parts[2],
-            error: rounded * gamma(7) + seen * gamma(8),
+            error: rounded * gamma(7) + Vec3::splat(seen * gamma(8)),
         }
     }
 
@@ -90,6 +92,16 @@ mod tests {
         assert!(point.start(Vec3::Z, Vec3::Z).z > 1e4);
         assert!(point.start(Vec3::Z, Vec3::NEG_Z).z < 1e4);
         assert!(point.start(Vec3::Z, Vec3::X).z > 1e4);
+    }
+
+    #[test]
+    fn the_start_leaves_planes_whose_coordinates_are_exact() {
+        let corners = [Vec3::ZERO, Vec3::X, Vec3::Y];
+        for (u, v) in [(0.0, 0.0), (0.25, 0.5), (1.0, 0.0)] {
+            let point = SurfacePoint::of(&corners, u, v);
+            assert!(point.start(Vec3::Z, Vec3::Z).z > 0.0);
+            assert!(point.start(Vec3::Z, Vec3::NEG_Z).z < 0.0);
+        }
     }
 
     #[test]

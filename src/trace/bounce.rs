@@ -1,13 +1,11 @@
 //! `bounce`: one diffuse reflection of each primary ray that hits: cosine-weighted around the triangle's normal, on the
-//! side that the primary ray came from, started as [`SurfacePoint`] says.
+//! side that the primary ray came from.
 
-use crate::accel;
 use crate::geometry::Ray;
-use crate::kernel;
-use crate::scene::Scene;
 
+use super::first_hit::first_hits;
 use super::sample::{cosine_direction, generator};
-use super::{Query, RayError, RaySetEntry, Rays, SurfacePoint, closest, primary};
+use super::{Query, RaySetEntry, Rays};
 
 pub(super) const ENTRY: RaySetEntry = RaySetEntry {
     name: "bounce",
@@ -16,11 +14,14 @@ pub(super) const ENTRY: RaySetEntry = RaySetEntry {
     argument: "",
     params: &[],
     make: |request| {
-        let points = first_points(request.scene, request.count)?;
+        let hits = first_hits(request.scene, request.count)?;
         let mut random = generator(request.seed, 2);
-        let rays: Vec<Ray> = points
+        let rays: Vec<Ray> = hits
             .iter()
-            .map(|point| point.ray_along(cosine_direction(&mut random, point.normal)))
+            .map(|hit| {
+                let normal = hit.normal.as_dvec3();
+                hit.ray_along(cosine_direction(&mut random, normal).as_vec3())
+            })
             .collect();
         let warnings = none_hit("bounce", rays.is_empty());
         Ok(Rays { rays, warnings })
@@ -38,32 +39,9 @@ pub(super) fn none_hit(name: &str, empty: bool) -> Vec<String> {
     }
 }
 
-/// Where the rays of the camera's picture of at most `count` pixels meet the scene, in the picture's tile order.
-///
-/// The hits are those of the kernel `woop`; misses and triangles without area are left out.
-///
-/// # Errors
-/// The structure that finds them was not built.
-pub(super) fn first_points(scene: &Scene, count: usize) -> Result<Vec<SurfacePoint>, RayError> {
-    let (width, height) = primary::picture_size(count);
-    let mut rays = primary::rays(&scene.camera, width, height);
-    rays.retain(Ray::is_valid);
-    let kernel = kernel::parse("woop").or_else(|_| kernel::parse(kernel::KERNELS[0].name));
-    let accel = accel::parse("bvh").or_else(|_| accel::parse("brute"));
-    let (kernel, accel) = (kernel?, accel?);
-    let structure = accel::build(&scene.mesh, &accel, None, &kernel, u64::MAX)?;
-    let hits = closest(&*structure, &rays);
-    Ok(rays
-        .iter()
-        .zip(&hits)
-        .filter_map(|(ray, hit)| SurfacePoint::new(&scene.mesh, ray, hit))
-        .collect())
-}
-
 #[cfg(test)]
 mod tests {
-    use super::super::{fixture, ray_set};
-    use super::*;
+    use super::super::{closest, fixture, ray_set};
 
     #[test]
     fn bounces_in_a_closed_room_all_hit() {

@@ -25,18 +25,17 @@ use crate::scene::Scene;
 mod batch;
 mod bounce;
 pub mod files;
+mod first_hit;
 #[cfg(test)]
 mod fixture;
 mod primary;
 mod random;
 mod sample;
 mod shadow;
-mod surface;
 
 pub use batch::{
     BATCH, closest, closest_counted, closest_into, occluded, occluded_counted, occluded_into,
 };
-pub use surface::SurfacePoint;
 
 /// What is asked of each ray.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

@@ -1,13 +1,14 @@
 //! `shadow`: from the point where a primary ray hits, one ray to each light.
 //!
 //! The picture has so many pixels that the set stays within the count. Rays to one light stand together, in the
-//! picture's tile order. Both ends keep the distance that [`super::SurfacePoint`] says. A scene without lights gets one
+//! picture's tile order. Both ends keep a distance that follows from an error bound. A scene without lights gets one
 //! point above it, a little to the right: a head light would only find rays that are free.
 
 use crate::geometry::{Ray, Vec3};
 use crate::scene::Scene;
 
-use super::bounce::{first_points, none_hit};
+use super::bounce::none_hit;
+use super::first_hit::first_hits;
 use super::{Query, RaySetEntry, Rays};
 
 pub(super) const ENTRY: RaySetEntry = RaySetEntry {
@@ -25,10 +26,10 @@ pub(super) const ENTRY: RaySetEntry = RaySetEntry {
         } else {
             lights
         };
-        let points = first_points(request.scene, (request.count / lights.len()).max(1))?;
+        let hits = first_hits(request.scene, (request.count / lights.len()).max(1))?;
         let mut rays: Vec<Ray> = lights
             .iter()
-            .flat_map(|light| points.iter().filter_map(|point| point.ray_to(*light)))
+            .flat_map(|light| hits.iter().filter_map(|hit| hit.ray_to(*light)))
             .collect();
         rays.truncate(request.count);
         warnings.extend(none_hit("shadow", rays.is_empty()));

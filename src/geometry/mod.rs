@@ -3,6 +3,7 @@
 //! Vectors are glam's: [`Vec3`] in `f32` for what is stored, [`DVec3`] in `f64` where a computation needs it.
 
 mod aabb;
+pub mod exact;
 pub mod lanes;
 mod ray;
 mod surface;

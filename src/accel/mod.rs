@@ -193,6 +193,9 @@ pub struct AcceleratorEntry {
 /// All accelerators, in the order in which they are listed.
 pub const ACCELERATORS: &[AcceleratorEntry] = &[brute::ENTRY, bvh::ENTRY];
 
+/// The accelerator taken where none is named: the fastest of raylab's own.
+pub const DEFAULT: &str = "bvh";
+
 /// Greatest accepted n; DESIGN asks for 512, the format of the cells allows this.
 pub const MAX_N: u32 = 1024;
 

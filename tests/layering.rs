@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 /// The rooms from the top down. A room may use what stands after it, and itself.
 const ROOMS: &[&str] = &[
-    "cli", "tui", "preview", "report", "lab", "stats", "shade", "trace", "oracle", "accel", "kernel", "scene",
-    "geometry", "registry",
+    "cli", "tui", "preview", "report", "lab", "stats", "shade", "trace", "oracle", "accel",
+    "kernel", "scene", "geometry", "registry",
 ];
 
 /// The sources, as paths relative to `src` and their texts.
@@ -18,7 +18,10 @@ fn sources() -> Vec<(PathBuf, String)> {
                 collect(&path, src, files);
             } else if path.extension().is_some_and(|e| e == "rs") {
                 let relative = path.strip_prefix(src).expect("files lie in src").to_owned();
-                files.push((relative, fs::read_to_string(&path).expect("sources are UTF-8")));
+                files.push((
+                    relative,
+                    fs::read_to_string(&path).expect("sources are UTF-8"),
+                ));
             }
         }
     }
@@ -32,7 +35,11 @@ fn sources() -> Vec<(PathBuf, String)> {
 /// The room a file belongs to: the first part of its path, without `.rs`.
 fn room_of(path: &Path) -> String {
     let first = path.components().next().expect("a file has a name");
-    first.as_os_str().to_string_lossy().trim_end_matches(".rs").to_owned()
+    first
+        .as_os_str()
+        .to_string_lossy()
+        .trim_end_matches(".rs")
+        .to_owned()
 }
 
 /// Rooms that a text names by `crate::room` outside comments.
@@ -44,7 +51,9 @@ fn rooms_named(text: &str) -> Vec<&'static str> {
         .join("\n");
     let names = |room: &str| {
         code.match_indices(&format!("crate::{room}"))
-            .any(|(at, found)| !code[at + found.len()..].starts_with(|c: char| c.is_alphanumeric() || c == '_'))
+            .any(|(at, found)| {
+                !code[at + found.len()..].starts_with(|c: char| c.is_alphanumeric() || c == '_')
+            })
     };
     ROOMS.iter().filter(|room| names(room)).copied().collect()
 }
@@ -74,6 +83,10 @@ fn every_room_uses_only_lower_rooms() {
 fn imports_are_written_so_that_the_check_sees_them() {
     // `use crate::{a, b}` would hide rooms from the search for `crate::a`.
     for (path, text) in sources() {
-        assert!(!text.contains("use crate::{"), "{} imports with `use crate::{{`", path.display());
+        assert!(
+            !text.contains("use crate::{"),
+            "{} imports with `use crate::{{`",
+            path.display()
+        );
     }
 }

@@ -23,6 +23,9 @@ pub use catalog::{MAX_TRIANGLES, SCENES, Sizes, check, load};
 pub use error::SceneError;
 pub use mesh::{Mesh, MeshError};
 
+/// Linear RGB behind scenes that do not say: dark enough that every surface stands out.
+const BACKGROUND: Vec3 = Vec3::new(0.03, 0.035, 0.045);
+
 /// What reflects light at a triangle, as MTL states it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {

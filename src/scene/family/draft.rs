@@ -3,10 +3,7 @@
 use std::sync::Arc;
 
 use crate::geometry::{DVec3, Vec3};
-use crate::scene::{Camera, Light, Material, Mesh, Scene, SceneError};
-
-/// Linear RGB behind procedural scenes: dark enough that every surface stands out.
-const BACKGROUND: Vec3 = Vec3::new(0.03, 0.035, 0.045);
+use crate::scene::{BACKGROUND, Camera, Light, Material, Mesh, Scene, SceneError};
 
 /// Corners of a box's faces (−z, +z, −y, +y, −x, +x), counter-clockwise seen from outside; corner k has bits xyz.
 const CUBOID_FACES: [[usize; 4]; 6] = [

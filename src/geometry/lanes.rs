@@ -10,6 +10,10 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 use super::Vec3;
 
+mod x8;
+
+pub use x8::{F32x8, Mask8};
+
 /// The truth values of `W` comparisons.
 pub trait LaneMask:
     Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self>

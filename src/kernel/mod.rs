@@ -142,6 +142,3 @@ pub fn parse(text: &str) -> Result<Choice, ChoiceError> {
 pub fn entry(choice: &Choice) -> Option<&'static KernelEntry> {
     KERNELS.iter().find(|k| k.name == choice.name)
 }
-
-#[cfg(test)]
-mod tests;

@@ -1,11 +1,12 @@
-//! What holds for every kernel of the registry.
+//! What holds for every kernel of the registry: one answer in every lane width, a bound on `t` that the oracle confirms.
 
 use proptest::prelude::*;
 
-use super::*;
-use crate::geometry::Hit;
-use crate::geometry::lanes::{F32x8, LaneMask};
-use crate::oracle;
+use raylab::geometry::lanes::{F32x8, Lane, LaneMask};
+use raylab::geometry::{Hit, Ray, Vec3};
+use raylab::kernel::{KERNELS, Kernel, KernelUser, LaneHit, dispatch, entry, parse};
+use raylab::oracle;
+use raylab::registry::Choice;
 
 /// One kernel's answers for eight triangles: in eight lanes, and one by one.
 struct BothWidths<'a> {

@@ -28,9 +28,9 @@ impl SurfacePoint {
     /// Weights outside the triangle are moved into it, NaN to 0, so the point always lies on the triangle.
     #[must_use]
     pub fn of(corners: &[Vec3; 3], u: f32, v: f32) -> Self {
-        // `max` gives 0 for NaN.
-        let u = u.max(0.0).min(1.0);
-        let v = v.max(0.0).min(1.0 - u);
+        // A comparison with NaN is false.
+        let u = if u > 0.0 { u.min(1.0) } else { 0.0 };
+        let v = if v > 0.0 { v.min(1.0 - u) } else { 0.0 };
         let parts = [corners[0] * (1.0 - u - v), corners[1] * u, corners[2] * v];
         let rounded = parts[0].abs() + parts[1].abs() + parts[2].abs();
         // A kernel looks back at the triangle over the distance to its corners, and mixes the axes in doing so: on a

@@ -2,11 +2,15 @@
 //! sink as [`Event`]s.
 
 mod control;
+mod error;
 mod event;
 mod plan;
 mod record;
+mod resolutions;
 
 pub use control::Control;
+pub use error::LabError;
 pub use event::Event;
-pub use plan::{Budget, NRule, Plan, RunConfig};
+pub use plan::{Budget, MAX_THREADS, NRule, Plan, RunConfig};
 pub use record::{Checksum, PerRay, RunRecord, Spread, StopReason};
+pub use resolutions::parse_n_list;

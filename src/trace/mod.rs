@@ -193,6 +193,21 @@ pub fn parse(spec: &str) -> Result<(&'static RaySetEntry, &str), RayError> {
     })
 }
 
+/// Checks what can be checked of a set without its scene; of a file that all its rays are valid.
+///
+/// # Errors
+/// Those of [`ray_set`] that do not depend on the scene.
+pub fn check(spec: &str, count: usize) -> Result<(), RayError> {
+    let (entry, argument) = parse(spec)?;
+    if count == 0 || count > MAX_RAYS {
+        return Err(RayError::Count(count));
+    }
+    if entry.name == files::ENTRY.name {
+        files::read_rays(std::path::Path::new(argument))?;
+    }
+    Ok(())
+}
+
 /// Makes the set that `spec` names: at most `count` rays over `scene`, all valid, the same for the same arguments.
 ///
 /// A set may hold fewer rays, even none (`bounce` where nothing is hit); its warnings say so.

@@ -28,6 +28,8 @@ use crate::scene::Mesh;
 
 mod brute;
 mod bvh;
+mod clip;
+mod kd_tree;
 mod sah;
 mod slab;
 #[cfg(test)]
@@ -37,6 +39,7 @@ mod visit;
 
 pub use brute::Brute;
 pub use bvh::Bvh;
+pub use kd_tree::KdTree;
 pub use traced::finish;
 pub use visit::{Counts, Visitor};
 
@@ -191,7 +194,7 @@ pub struct AcceleratorEntry {
 }
 
 /// All accelerators, in the order in which they are listed.
-pub const ACCELERATORS: &[AcceleratorEntry] = &[brute::ENTRY, bvh::ENTRY];
+pub const ACCELERATORS: &[AcceleratorEntry] = &[brute::ENTRY, kd_tree::ENTRY, bvh::ENTRY];
 
 /// The accelerator taken where none is named: the fastest of raylab's own.
 pub const DEFAULT: &str = "bvh";

@@ -31,15 +31,21 @@ pub(super) fn corners(aabb: Aabb) -> Corners {
     [aabb.min.to_array(), aabb.max.to_array()]
 }
 
+/// A ray against the planes across one axis.
+#[derive(Debug, Clone, Copy)]
+struct Slab {
+    near_origin: f32,
+    far_origin: f32,
+    near_inverse: f32,
+    far_inverse: f32,
+    /// Which side the ray comes from: 1 where its direction is negative.
+    near: usize,
+}
+
 /// A ray prepared for slab tests against boxes within one scene.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SlabRay {
-    /// Which corner has the near face: 1 where the direction is negative.
-    near: [usize; 3],
-    near_origin: [f32; 3],
-    far_origin: [f32; 3],
-    near_inverse: [f32; 3],
-    far_inverse: [f32; 3],
+    slabs: [Slab; 3],
     t_min: f32,
 }
 
@@ -57,61 +63,18 @@ impl SlabRay {
         let trusted = in_range(longest)
             && (reach == 0.0 || in_range(reach))
             && ray.origin.abs().max_element() < RANGE;
-        let mut slabs = Self {
-            near: [0; 3],
-            near_origin: ray.origin.to_array(),
-            far_origin: ray.origin.to_array(),
-            near_inverse: [f32::NAN; 3],
-            far_inverse: [f32::NAN; 3],
+        let (origin, dir) = (ray.origin.to_array(), ray.dir.to_array());
+        let behind = ray.t_min < 0.0;
+        Self {
+            slabs: [0, 1, 2].map(|axis| {
+                if trusted {
+                    Slab::new(origin[axis], dir[axis], longest, reach, behind)
+                } else {
+                    Slab::unconstrained(dir[axis])
+                }
+            }),
             // Infinite t means "outside the slab" below, so the interval must not contain it.
             t_min: ray.t_min.max(-f32::MAX),
-        };
-        if trusted {
-            for axis in 0..3 {
-                slabs.prepare(axis, ray, longest, reach);
-            }
-        }
-        slabs
-    }
-
-    #[inline(always)]
-    fn prepare(&mut self, axis: usize, ray: &Ray, longest: f32, reach: f32) {
-        let (origin, dir) = (ray.origin.to_array()[axis], ray.dir.to_array()[axis]);
-        let sign = 1.0_f32.copysign(dir);
-        let width = CONE * longest;
-        self.near[axis] = usize::from(sign < 0.0);
-        if dir.abs() <= 2.0 * width {
-            // Across the scene the ray moves by less than this pad along the axis. Where the pad is lost in rounding,
-            // the next coordinate that a face can have lies beyond it.
-            let pad = (0.5 * CONE + 2.0 * (dir.abs() / longest)) * reach;
-            self.near_origin[axis] = origin + sign * pad;
-            self.far_origin[axis] = origin - sign * pad;
-            self.near_inverse[axis] = sign * f32::INFINITY;
-            self.far_inverse[axis] = sign * f32::INFINITY;
-        } else if ray.t_min < 0.0 {
-            // Behind the origin the cone would be the wrong way round: pad by its greatest width instead.
-            let pad = sign * CONE * reach;
-            let outward = |x: f32| {
-                if sign < 0.0 {
-                    x.next_down()
-                } else {
-                    x.next_up()
-                }
-            };
-            let inward = |x: f32| {
-                if sign < 0.0 {
-                    x.next_up()
-                } else {
-                    x.next_down()
-                }
-            };
-            self.near_origin[axis] = outward(origin + pad);
-            self.far_origin[axis] = inward(origin - pad);
-            self.near_inverse[axis] = 1.0 / dir;
-            self.far_inverse[axis] = 1.0 / dir;
-        } else {
-            self.near_inverse[axis] = 1.0 / (dir + sign * width);
-            self.far_inverse[axis] = 1.0 / (dir - sign * width);
         }
     }
 
@@ -122,18 +85,27 @@ impl SlabRay {
     pub fn clip(&self, corners: &Corners, limit: f32) -> (f32, f32) {
         let mut entry = self.t_min;
         let mut exit = limit.min(f32::MAX);
-        let mut slab = |axis: usize| {
-            let near = self.near[axis] & 1;
-            let near_t = (corners[near][axis] - self.near_origin[axis]) * self.near_inverse[axis];
-            let far_t = (corners[near ^ 1][axis] - self.far_origin[axis]) * self.far_inverse[axis];
-            // Written so that NaN constrains nothing.
-            entry = if near_t > entry { near_t } else { entry };
-            exit = if far_t < exit { far_t } else { exit };
+        let mut narrow = |axis: usize| {
+            let slab = &self.slabs[axis];
+            let near = slab.near & 1;
+            entry = slab.enter(corners[near][axis], entry);
+            exit = slab.leave(corners[near ^ 1][axis], exit);
         };
-        slab(0);
-        slab(1);
-        slab(2);
+        narrow(0);
+        narrow(1);
+        narrow(2);
         (entry, exit)
+    }
+
+    /// Cuts the interval at the plane where `axis` is `plane`: the exit from the side that the ray comes from, the entry
+    /// into the other side, and which side the ray comes from: 1 for that of the greater coordinates.
+    ///
+    /// The ray does not touch the first side if that exit is less than `entry`, nor the second if that entry is greater
+    /// than `exit`. Both are touched where the plane is met, or lain in, within the pad.
+    #[inline(always)]
+    pub fn cut(&self, axis: usize, plane: f32, entry: f32, exit: f32) -> (f32, f32, usize) {
+        let slab = &self.slabs[axis];
+        (slab.leave(plane, exit), slab.enter(plane, entry), slab.near)
     }
 
     /// As [`SlabRay::clip`], `None` where the box is missed.
@@ -141,6 +113,74 @@ impl SlabRay {
     pub fn interval(&self, corners: &Corners, limit: f32) -> Option<(f32, f32)> {
         let (entry, exit) = self.clip(corners, limit);
         (entry <= exit).then_some((entry, exit))
+    }
+}
+
+impl Slab {
+    /// Planes that constrain nothing: every product with NaN is NaN.
+    fn unconstrained(dir: f32) -> Self {
+        Self {
+            near_origin: 0.0,
+            far_origin: 0.0,
+            near_inverse: f32::NAN,
+            far_inverse: f32::NAN,
+            near: usize::from(dir < 0.0),
+        }
+    }
+
+    /// `longest` is the longest component of the direction; see [`SlabRay::new`] for `reach`.
+    #[inline(always)]
+    fn new(origin: f32, dir: f32, longest: f32, reach: f32, behind: bool) -> Self {
+        let sign = 1.0_f32.copysign(dir);
+        let width = CONE * longest;
+        let near = usize::from(sign < 0.0);
+        if dir.abs() <= 2.0 * width {
+            // Across the scene the ray moves by less than this pad along the axis. Where the pad is lost in rounding,
+            // the next coordinate that a face can have lies beyond it.
+            let pad = (0.5 * CONE + 2.0 * (dir.abs() / longest)) * reach;
+            Self {
+                near_origin: origin + sign * pad,
+                far_origin: origin - sign * pad,
+                near_inverse: sign * f32::INFINITY,
+                far_inverse: sign * f32::INFINITY,
+                near,
+            }
+        } else if behind {
+            // Behind the origin the cone would be the wrong way round: pad by its greatest width instead.
+            let (up, down) = (
+                (origin + CONE * reach).next_up(),
+                (origin - CONE * reach).next_down(),
+            );
+            Self {
+                near_origin: if sign < 0.0 { down } else { up },
+                far_origin: if sign < 0.0 { up } else { down },
+                near_inverse: 1.0 / dir,
+                far_inverse: 1.0 / dir,
+                near,
+            }
+        } else {
+            Self {
+                near_origin: origin,
+                far_origin: origin,
+                near_inverse: 1.0 / (dir + sign * width),
+                far_inverse: 1.0 / (dir - sign * width),
+                near,
+            }
+        }
+    }
+
+    /// The later of `entry` and the earliest `t` beyond `plane`. Written so that NaN constrains nothing.
+    #[inline(always)]
+    fn enter(&self, plane: f32, entry: f32) -> f32 {
+        let t = (plane - self.near_origin) * self.near_inverse;
+        if t > entry { t } else { entry }
+    }
+
+    /// The earlier of `exit` and the latest `t` before `plane`. Written so that NaN constrains nothing.
+    #[inline(always)]
+    fn leave(&self, plane: f32, exit: f32) -> f32 {
+        let t = (plane - self.far_origin) * self.far_inverse;
+        if t < exit { t } else { exit }
     }
 }
 

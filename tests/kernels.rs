@@ -161,11 +161,20 @@ proptest! {
 
     #[test]
     fn triangles_without_area_are_misses(
-        p in points(3), along in -2f32..2.0, same in any::<bool>()
+        p in points(2), whole in prop::array::uniform9(-3i32..=3), shape in 0..5u8, along in -2f32..2.0
     ) {
-        let corners = if same { [p[0], p[1], p[0]] } else { [p[0], p[0], p[0]] };
-        let ray = Ray::new(p[2], (p[0] + (p[1] - p[0]) * along) - p[2]);
-        if ray.is_valid() && corners.iter().all(|v| v.is_finite()) {
+        let vector = |i: usize| Vec3::new(whole[i] as f32, whole[i + 1] as f32, whole[i + 2] as f32);
+        let corners = match shape {
+            0 => [p[0]; 3],
+            1 => [p[0], p[1], p[0]],
+            2 => [p[0], p[1], p[1]],
+            3 => [p[0], p[0], p[1]],
+            // Three points of one line.
+            _ => [vector(0), vector(0) + vector(3), vector(0) - vector(3) * 2.0],
+        };
+        let origin = vector(6) * p[0].x.abs().max(1.0);
+        let ray = Ray::new(origin, corners[0] + (corners[1] - corners[0]) * along - origin);
+        if ray.is_valid() {
             for kernel in each_kernel() {
                 let hit = one_hit(&kernel, &ray, &corners).filter(|(hit, _)| !hit.t.is_nan());
                 prop_assert!(hit.is_none(), "{}: {hit:?}", &kernel.name);

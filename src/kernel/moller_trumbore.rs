@@ -2,7 +2,8 @@
 //!
 //! **Source:** T. Möller and B. Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", JGT 2(1), 1997.
 //! **Differs:** no epsilon on the determinant: an absolute one rejects every edge-aimed ray on a small mesh; a zero
-//! determinant (a ray parallel to the triangle, or a triangle without area) is a miss, nothing else is.
+//! determinant, of a ray parallel to the triangle, is a miss, nothing else is. A triangle without area is made one point
+//! when it is packed, since its determinant would be a rounding error.
 
 use crate::geometry::lanes::{Lane, LaneMask, LaneVec3};
 use crate::geometry::{DVec3, Ray, Vec3};
@@ -52,6 +53,7 @@ impl Kernel for MollerTrumbore {
     type Prepared<const W: usize, L: Lane<W>> = Prepared<L>;
 
     fn pack<const W: usize>(&self, corners: impl Fn(usize) -> [Vec3; 3]) -> Packed<W> {
+        let corners = |lane| super::with_area(corners(lane));
         Packed {
             v0: super::rows(|lane| corners(lane)[0]),
             e1: super::rows(|lane| corners(lane)[1] - corners(lane)[0]),

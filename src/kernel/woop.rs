@@ -11,7 +11,7 @@
 //!
 //! **Source:** S. Woop, C. Benthin and I. Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
 //! **Differs:** no back-face culling, so the winding is not kept by swapping axes. Edge functions that are 0 are computed
-//! again in `f64`, as in the paper, lane by lane. Nothing here may be fused: rounding is monotone, so fl(ab) − fl(cd) has
+//! again in `f64`, as in the paper, lane by lane. A triangle without area is made one point when it is packed. Nothing here may be fused: rounding is monotone, so fl(ab) − fl(cd) has
 //! the right sign or is 0, and a fused multiply-add breaks exactly that.
 
 use crate::geometry::lanes::{Lane, LaneMask, LaneVec3};
@@ -88,7 +88,9 @@ impl Kernel for Woop {
 
     fn pack<const W: usize>(&self, corners: impl Fn(usize) -> [Vec3; 3]) -> Packed<W> {
         Packed {
-            corners: std::array::from_fn(|i| super::rows(|lane| corners(lane)[i])),
+            corners: std::array::from_fn(|i| {
+                super::rows(|lane| super::with_area(corners(lane))[i])
+            }),
         }
     }
 

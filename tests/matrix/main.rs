@@ -1,0 +1,119 @@
+//! The matrix: every accelerator with every choice of its parameters × every kernel × every scene, each its own test.
+//!
+//! Made from the registries, so a new row is covered when it is added. A test's name is
+//! `accelerator[:parameters][@n]/kernel/scene`. What a case checks stands in [`check`], on what in [`scenes`] and
+//! [`rays`].
+//!
+//! Rays on which a kernel errs and the answers differ are counted and printed at the end. `woop` and `moller-trumbore`
+//! on scenes of ordinary scale have none.
+
+mod check;
+mod rays;
+mod scenes;
+mod setting;
+
+use std::collections::BTreeMap;
+use std::process::ExitCode;
+use std::sync::{Arc, Mutex};
+
+use libtest_mimic::{Arguments, Trial};
+use raylab::accel::{ACCELERATORS, AcceleratorEntry};
+use raylab::kernel::{self, KERNELS};
+use raylab::registry::{Choice, ParamKind, ParamSpec, Params};
+
+use check::{Case, Tally};
+use setting::Setting;
+
+/// Kernels of which not even an error may differ on a scene of ordinary scale.
+const STRICT: &[&str] = &["woop", "moller-trumbore"];
+
+/// Every combination of the words of `specs`; numbers keep their defaults.
+fn combinations(specs: &'static [ParamSpec]) -> Vec<Params> {
+    specs
+        .iter()
+        .fold(vec![Params::defaults(specs)], |all, spec| {
+            let ParamKind::Choice(words) = spec.kind else {
+                return all;
+            };
+            all.iter()
+                .flat_map(|params| {
+                    words.iter().map(|word| {
+                        let mut params = params.clone();
+                        params
+                            .set(specs, spec.name, word)
+                            .expect("the word is in the list");
+                        params
+                    })
+                })
+                .collect()
+        })
+}
+
+/// What is built of one accelerator over one scene: all its parameters at its own n, and the defaults at given ones.
+fn builds(entry: &'static AcceleratorEntry, scene: &Setting) -> Vec<(Choice, Option<u32>)> {
+    let choice = |params| Choice {
+        name: entry.name.to_owned(),
+        params,
+    };
+    let all = combinations(entry.params)
+        .into_iter()
+        .map(|params| (choice(params), None));
+    let resolutions = match entry.resolution {
+        Some(_) => scene.resolutions,
+        None => &[],
+    };
+    let defaults = choice(Params::defaults(entry.params));
+    all.chain(resolutions.iter().map(|&n| (defaults.clone(), Some(n))))
+        .collect()
+}
+
+/// A choice of each kernel with its default parameters.
+fn kernels() -> impl Iterator<Item = Choice> {
+    KERNELS
+        .iter()
+        .map(|k| kernel::parse(k.name).expect("a row's name is known"))
+}
+
+fn trials(tally: &Tally) -> Vec<Trial> {
+    let mut trials = Vec::new();
+    for scene in scenes::all() {
+        let scene = Arc::new(scene);
+        for entry in ACCELERATORS {
+            for (accel, n) in builds(entry, &scene) {
+                for kernel in kernels() {
+                    let case = Case {
+                        scene: Arc::clone(&scene),
+                        accel: accel.clone(),
+                        n,
+                        strict: scene.ordinary && STRICT.contains(&kernel.name.as_str()),
+                        kernel,
+                    };
+                    let at = n.map_or(String::new(), |n| format!("@{n}"));
+                    let name = format!(
+                        "{}{at}/{}/{}",
+                        accel.label(entry.params),
+                        case.kernel.name,
+                        scene.name
+                    );
+                    let tally = Arc::clone(tally);
+                    trials.push(Trial::test(name, move || {
+                        check::check(&case, &tally).map_err(Into::into)
+                    }));
+                }
+            }
+        }
+    }
+    trials
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::from_args();
+    let tally: Tally = Arc::new(Mutex::new(BTreeMap::new()));
+    let conclusion = libtest_mimic::run(&arguments, trials(&tally));
+    if let Ok(tally) = tally.lock() {
+        for (kernel, (errors, rays)) in tally.iter() {
+            eprintln!("kernel errors that differ: {kernel}: {errors} of {rays} rays");
+        }
+    }
+    conclusion.exit_code()
+}

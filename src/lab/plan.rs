@@ -279,10 +279,10 @@ impl RunConfig {
         // A struct of strings and numbers always serialises; its fields come in the order of their declaration and
         // parameters by name, so the text is canonical.
         let text = serde_json::to_string(self).unwrap_or_default();
-        Sha256::digest(text.as_bytes())[..6]
-            .iter()
-            .map(|byte| format!("{byte:02x}"))
-            .collect()
+        let digest = Sha256::digest(text.as_bytes());
+        let start = digest.iter().take(6);
+        let number = start.fold(0_u64, |number, byte| number << 8 | u64::from(*byte));
+        format!("{number:012x}")
     }
 }
 
@@ -360,7 +360,8 @@ mod tests {
 
     #[test]
     fn a_plan_that_cannot_be_carried_out_is_refused_with_the_reason() {
-        let changes: [(fn(&mut Plan), &str); 10] = [
+        type Change = fn(&mut Plan);
+        let changes: [(Change, &str); 10] = [
             (|p| p.scenes.clear(), "no scene"),
             (|p| p.kernels.clear(), "no kernel"),
             (|p| p.threads = vec![0], "0 threads"),

@@ -1,0 +1,95 @@
+//! What the machine gives a sweep: thread pools, and reasons to distrust its clock.
+
+use std::collections::BTreeMap;
+use std::thread::available_parallelism;
+
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use sysinfo::System;
+
+use super::LabError;
+
+/// One pool a thread count, built once, and one of all cores for what is not timed.
+pub(super) struct Pools {
+    timed: BTreeMap<usize, ThreadPool>,
+    all: ThreadPool,
+}
+
+impl Pools {
+    /// Pools of these thread counts.
+    ///
+    /// # Errors
+    /// The system gives no such number of threads.
+    pub fn new(threads: &[usize]) -> Result<Self, LabError> {
+        let pool = |threads: usize| {
+            let built = ThreadPoolBuilder::new().num_threads(threads).build();
+            built.map_err(|why| LabError::Pool {
+                threads,
+                why: why.to_string(),
+            })
+        };
+        Ok(Self {
+            timed: threads
+                .iter()
+                .map(|t| Ok((*t, pool(*t)?)))
+                .collect::<Result<_, LabError>>()?,
+            all: pool(cores())?,
+        })
+    }
+
+    /// The pool of this many threads; of all cores where there is none of that size.
+    pub fn of(&self, threads: usize) -> &ThreadPool {
+        self.timed.get(&threads).unwrap_or(&self.all)
+    }
+
+    /// The pool of all cores.
+    pub fn all(&self) -> &ThreadPool {
+        &self.all
+    }
+}
+
+/// Cores that the program may use; 1 where the system does not say.
+pub(super) fn cores() -> usize {
+    available_parallelism().map_or(1, usize::from)
+}
+
+/// Why figures of runs with this many threads should be read with care, one sentence each.
+pub(super) fn warnings(threads: usize) -> Vec<String> {
+    // Systems without a load average, like Windows, give no warning of load.
+    let load = System::load_average().map_or(0.0, |load| load.one);
+    warnings_of(threads, cores(), load)
+}
+
+fn warnings_of(threads: usize, cores: usize, load: f64) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if threads > cores {
+        warnings.push(format!("{threads} threads shared {cores} CPUs"));
+    }
+    // The sweep itself adds at most one for each core that it uses.
+    if load > cores as f64 + 0.5 {
+        warnings.push(format!(
+            "the load average was {load:.1} on {cores} CPUs: other programs ran beside"
+        ));
+    }
+    warnings
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pool_has_the_threads_that_were_asked_for() {
+        let pools = Pools::new(&[1, 3]).unwrap();
+        for threads in [1, 3] {
+            assert_eq!(pools.of(threads).current_num_threads(), threads);
+        }
+        assert_eq!(pools.all().current_num_threads(), cores());
+    }
+
+    #[test]
+    fn too_many_threads_and_foreign_load_are_told() {
+        assert!(warnings_of(2, 4, 4.2).is_empty());
+        assert!(warnings_of(8, 4, 0.0)[0].contains("8 threads shared 4 CPUs"));
+        assert!(warnings_of(2, 4, 6.04)[0].contains("6.0 on 4 CPUs"));
+    }
+}

@@ -1,0 +1,347 @@
+//! Sweeps: the runs of a plan, measured side by side.
+//!
+//! ```text
+//! plan ──▶ groups: same scene, rays, kernel, threads
+//!             │
+//!             ├─ prepare each run:  build ×k ─ counted pass ─ check against brute force ─ warm-up pass
+//!             │
+//!             └─ rounds:  a sample of each run, in a new seeded random order; a run that is sampled enough leaves
+//! ```
+//!
+//! **Source:** samples in random order: T. Mytkowicz et al., "Producing Wrong Data Without Doing Anything Obviously
+//! Wrong!", ASPLOS 2009; a slow stretch of the machine then falls on all configurations alike.
+//! **Differs:** structures of a group stand in memory together as long as they stay within the plan's memory limit; the
+//! next ones are prepared when these are done.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use rand_core::Rng;
+use rand_pcg::Pcg32;
+
+use crate::oracle::Oracle;
+use crate::scene::{self, Scene};
+use crate::trace::{self, RaySet};
+
+use super::estimate::Estimate;
+use super::judge::Judge;
+use super::live::{Live, Setting};
+use super::machine::Pools;
+use super::sampling::stop_reason;
+use super::{Control, Event, LabError, Plan, RunConfig, RunRecord};
+
+/// How often a sample is taken again when something disturbed it.
+const RETAKES: usize = 5;
+
+/// How often a paused sweep looks whether it may go on.
+const PAUSE: Duration = Duration::from_millis(20);
+
+/// What an earlier sweep of the same plan has left.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Done {
+    /// Ids of complete runs, which are not made again.
+    pub finished: BTreeSet<String>,
+    /// Speeds of samples that were taken of incomplete runs, by id; they count.
+    pub samples: BTreeMap<String, Vec<f64>>,
+}
+
+/// Makes the runs of `plan` whose ids are not in `finished`, and tells `sink` what happens. Returns when all are made
+/// or `control` stops it.
+///
+/// A run that cannot be made is told as [`Event::Failed`], and the sweep goes on. Whatever the threads and however
+/// often it is repeated, counters, checksums and verdicts are the same.
+///
+/// # Errors
+/// A plan that cannot be carried out; nothing has been told then.
+pub fn sweep(
+    plan: &Plan,
+    finished: &BTreeSet<String>,
+    control: &Control,
+    sink: &mut dyn FnMut(Event),
+) -> Result<(), LabError> {
+    let done = Done {
+        finished: finished.clone(),
+        samples: BTreeMap::new(),
+    };
+    sweep_from(plan, &done, control, sink)
+}
+
+/// As [`sweep`], going on from samples of incomplete runs, too.
+///
+/// # Errors
+/// As [`sweep`].
+pub fn sweep_from(
+    plan: &Plan,
+    done: &Done,
+    control: &Control,
+    sink: &mut dyn FnMut(Event),
+) -> Result<(), LabError> {
+    plan.check()?;
+    let mut runs: Vec<(String, RunConfig)> =
+        plan.runs().into_iter().map(|run| (run.id(), run)).collect();
+    runs.retain(|(id, _)| !done.finished.contains(id));
+    let mut scenes = BTreeMap::new();
+    for (_, run) in &runs {
+        if !scenes.contains_key(&run.scene) {
+            scenes.insert(run.scene.clone(), Stage::new(scene::load(&run.scene)?));
+        }
+    }
+    let mut sweep = Sweep {
+        plan,
+        done,
+        control,
+        pools: &Pools::new(&plan.threads)?,
+        estimate: Estimate::new(runs.len(), &plan.budget),
+        random: Pcg32::new(plan.seed, 11),
+        complete: 0,
+        sink,
+    };
+    (sweep.sink)(Event::Started { runs: runs.clone() });
+    let mut shared = Shared::default();
+    for group in runs.chunk_by(|(_, a), (_, b)| same_group(a, b)) {
+        sweep.group(group, &scenes[&group[0].1.scene], &mut shared);
+    }
+    let stopped = sweep.complete < runs.len();
+    (sweep.sink)(Event::Ended { stopped });
+    Ok(())
+}
+
+fn same_group(a: &RunConfig, b: &RunConfig) -> bool {
+    (&a.scene, &a.rays, &a.kernel, a.threads) == (&b.scene, &b.rays, &b.kernel, b.threads)
+}
+
+/// A loaded scene with its oracle.
+struct Stage {
+    scene: Scene,
+    oracle: Arc<Oracle>,
+}
+
+impl Stage {
+    fn new(scene: Scene) -> Self {
+        let oracle = Arc::new(Oracle::new(&scene.mesh));
+        Self { scene, oracle }
+    }
+}
+
+/// What groups that follow each other share: the ray set, and the answers of brute force to it.
+#[derive(Default)]
+struct Shared {
+    set: Option<(String, Arc<RaySet>)>,
+    judge: Option<(String, Judge)>,
+}
+
+struct Sweep<'a> {
+    plan: &'a Plan,
+    done: &'a Done,
+    control: &'a Control,
+    pools: &'a Pools,
+    estimate: Estimate,
+    random: Pcg32,
+    /// Runs that are complete or failed.
+    complete: usize,
+    sink: &'a mut dyn FnMut(Event),
+}
+
+impl Sweep<'_> {
+    /// Makes all runs of a group.
+    fn group(&mut self, runs: &[(String, RunConfig)], stage: &Stage, shared: &mut Shared) {
+        if !self.may_go_on() {
+            return;
+        }
+        let first = &runs[0].1;
+        let (set, judge) = match self.share(first, stage, shared) {
+            Ok(shared) => shared,
+            Err(why) => {
+                for (id, _) in runs {
+                    self.fail(id, why.clone(), 0.0);
+                }
+                return;
+            }
+        };
+        let setting = Setting {
+            plan: self.plan,
+            pools: self.pools,
+            mesh: &stage.scene.mesh,
+            set: &set,
+            judge,
+            threads: first.threads,
+        };
+        let mut waiting = runs.iter();
+        loop {
+            let live = self.prepare(&mut waiting, &setting);
+            if live.is_empty() {
+                return;
+            }
+            self.sample(live, &setting);
+        }
+    }
+
+    /// The ray set of a group and the answers of brute force to it, made anew where the last group had others.
+    fn share<'s>(
+        &self,
+        run: &RunConfig,
+        stage: &Stage,
+        shared: &'s mut Shared,
+    ) -> Result<(Arc<RaySet>, &'s Judge), String> {
+        let key = format!("{}\n{}", run.scene, run.rays);
+        if shared.set.as_ref().is_none_or(|(of, _)| *of != key) {
+            shared.judge = None;
+            let made = self
+                .pools
+                .all()
+                .install(|| trace::ray_set(&stage.scene, &run.rays, run.ray_count, run.seed));
+            let set = made.map_err(|why| why.to_string())?;
+            shared.set = Some((key, Arc::new(set)));
+        }
+        let set = shared.set.as_ref().map(|(_, set)| Arc::clone(set));
+        let set = set.filter(|set| !set.rays.is_empty()).ok_or_else(|| {
+            let (rays, scene) = (&run.rays, &run.scene);
+            format!("the ray set '{rays}' of '{scene}' has no rays: choose another set or scene")
+        })?;
+        let key = serde_json::to_string(&run.kernel).unwrap_or_default();
+        if shared.judge.as_ref().is_none_or(|(of, _)| *of != key) {
+            let (mesh, oracle) = (&stage.scene.mesh, &stage.oracle);
+            let (budget, seed) = (&self.plan.budget, self.plan.seed);
+            let made = self
+                .pools
+                .all()
+                .install(|| Judge::new(mesh, oracle, &run.kernel, &set, budget, seed));
+            shared.judge = Some((key, made.map_err(|why| why.to_string())?));
+        }
+        match &shared.judge {
+            Some((_, judge)) => Ok((set, judge)),
+            None => Err("brute force could not be traced".to_owned()),
+        }
+    }
+
+    /// Prepares waiting runs until their structures reach the memory limit; none where none is left or the sweep is
+    /// stopped.
+    fn prepare<'r>(
+        &mut self,
+        waiting: &mut impl Iterator<Item = &'r (String, RunConfig)>,
+        setting: &Setting,
+    ) -> Vec<Live> {
+        let mut live: Vec<Live> = Vec::new();
+        let mut bytes = 0;
+        while bytes < self.plan.memory_limit && self.may_go_on() {
+            let Some((id, config)) = waiting.next() else {
+                break;
+            };
+            (self.sink)(Event::Building { id: id.clone() });
+            let start = Instant::now();
+            let prepared = Live::prepare(id.clone(), config, setting);
+            let seconds = start.elapsed().as_secs_f64();
+            match prepared {
+                Ok(mut run) => {
+                    if let Some(speeds) = self.done.samples.get(id) {
+                        run.speeds.clone_from(speeds);
+                        run.resumed = speeds.len();
+                    }
+                    self.estimate.prepared(seconds);
+                    bytes += run.bytes();
+                    let record = Box::new(run.record.clone());
+                    (self.sink)(Event::Built { record });
+                    live.push(run);
+                }
+                Err(why) => self.fail(id, why, seconds),
+            }
+        }
+        live
+    }
+
+    /// Takes samples of all runs in turn until each is sampled enough.
+    fn sample(&mut self, mut live: Vec<Live>, setting: &Setting) {
+        while !live.is_empty() {
+            self.shuffle(&mut live);
+            let mut again = Vec::with_capacity(live.len());
+            let mut waiting: Vec<f64> = live.iter().map(|run| run.seconds).collect();
+            for (i, mut run) in live.into_iter().enumerate() {
+                let Some(speed) = self.take_sample(&mut run, setting) else {
+                    return;
+                };
+                run.speeds.push(speed);
+                waiting[i] = run.seconds;
+                let budget = &self.plan.budget;
+                let stop = stop_reason(&run.speeds, run.seconds, budget, self.plan.seed);
+                if stop.is_some() {
+                    self.estimate.complete(run.seconds);
+                    // Whatever it took: nothing of it is left.
+                    waiting[i] = f64::INFINITY;
+                }
+                let (done, seconds_left) = self.estimate.tell(waiting.iter().copied());
+                (self.sink)(Event::Sampled {
+                    id: run.record.id.clone(),
+                    mrays_per_s: speed,
+                    done,
+                    seconds_left,
+                });
+                match stop {
+                    Some(reason) => self.finish(run.finish(reason)),
+                    None => again.push(run),
+                }
+            }
+            live = again;
+        }
+    }
+
+    /// Takes one sample, again where something disturbed it; its speed, or `None` when the sweep is stopped.
+    fn take_sample(&mut self, run: &mut Live, setting: &Setting) -> Option<f64> {
+        let pool = setting.pools.of(setting.threads);
+        for attempt in 0..=RETAKES {
+            if !self.may_go_on() {
+                return None;
+            }
+            let before = self.control.disturbances();
+            self.control.set_sampling(true);
+            let (speed, seconds) = run.time(pool, self.plan.budget.sample_seconds);
+            self.control.set_sampling(false);
+            run.seconds += seconds;
+            run.check_room(setting.judge);
+            if self.control.disturbances() == before {
+                return Some(speed);
+            }
+            if attempt == RETAKES {
+                run.disturbed += 1;
+                return Some(speed);
+            }
+        }
+        None
+    }
+
+    /// Waits while the sweep is paused; whether it may go on, or is stopped.
+    fn may_go_on(&mut self) -> bool {
+        let start = Instant::now();
+        let mut waited = false;
+        while self.control.paused() && !self.control.stopped() {
+            std::thread::sleep(PAUSE);
+            waited = true;
+        }
+        if waited {
+            self.estimate.waited(start.elapsed().as_secs_f64());
+        }
+        !self.control.stopped()
+    }
+
+    /// Fisher and Yates.
+    fn shuffle<T>(&mut self, items: &mut [T]) {
+        for i in (1..items.len()).rev() {
+            let j = (u64::from(self.random.next_u32()) * (i as u64 + 1)) >> 32;
+            items.swap(i, j as usize);
+        }
+    }
+
+    fn finish(&mut self, record: RunRecord) {
+        self.complete += 1;
+        let record = Box::new(record);
+        (self.sink)(Event::Finished { record });
+    }
+
+    fn fail(&mut self, id: &str, why: String, seconds: f64) {
+        self.complete += 1;
+        self.estimate.prepared(seconds);
+        self.estimate.complete(0.0);
+        let id = id.to_owned();
+        (self.sink)(Event::Failed { id, why });
+    }
+}

@@ -97,8 +97,10 @@ fn reach(tree: &KdTree, mesh: &Mesh, sample: &[u32]) -> Result<(), String> {
             }
             continue;
         }
-        // What only touches a face may be listed beyond it: shrink the cell by more than the rounding.
-        let margin = (cell.extent() * 1e-3).max(Vec3::splat(4.0 * f32::EPSILON * cell.max_abs()));
+        // What only touches a face may be listed beyond it: shrink the cell by more than the rounding, which among
+        // subnormal coordinates is a step of them.
+        let rounding = 4.0 * f32::EPSILON * cell.max_abs() + f32::MIN_POSITIVE;
+        let margin = (cell.extent() * 1e-3).max(Vec3::splat(rounding));
         let inner = Aabb {
             min: cell.min + margin,
             max: cell.max - margin,

@@ -29,6 +29,7 @@ use crate::scene::Mesh;
 mod brute;
 mod bvh;
 mod clip;
+mod grid;
 mod kd_tree;
 mod sah;
 mod slab;
@@ -194,7 +195,8 @@ pub struct AcceleratorEntry {
 }
 
 /// All accelerators, in the order in which they are listed.
-pub const ACCELERATORS: &[AcceleratorEntry] = &[brute::ENTRY, kd_tree::ENTRY, bvh::ENTRY];
+pub const ACCELERATORS: &[AcceleratorEntry] =
+    &[brute::ENTRY, grid::ENTRY, kd_tree::ENTRY, bvh::ENTRY];
 
 /// The accelerator taken where none is named: the fastest of raylab's own.
 pub const DEFAULT: &str = "bvh";

@@ -224,12 +224,22 @@ pub fn rays(mesh: &Mesh, count: u32, seed: u64) -> Vec<Ray> {
     rays
 }
 
-/// Builds `accel` (`name:key=value…`) over `mesh` for `kernel`.
+/// Builds `accel` (`name:key=value…`) over `mesh` for `kernel`, at the predicted n where it has one.
 pub fn built(mesh: &Arc<Mesh>, accel: &str, kernel: &str) -> Box<dyn Accelerator> {
+    built_at(mesh, accel, None, kernel)
+}
+
+/// As [`built`], at resolution `n`.
+pub fn built_at(
+    mesh: &Arc<Mesh>,
+    accel: &str,
+    n: Option<u32>,
+    kernel: &str,
+) -> Box<dyn Accelerator> {
     super::build(
         mesh,
         &super::parse(accel).expect("known"),
-        None,
+        n,
         &kernel::parse(kernel).expect("known"),
         u64::MAX,
     )
@@ -239,8 +249,20 @@ pub fn built(mesh: &Arc<Mesh>, accel: &str, kernel: &str) -> Box<dyn Accelerator
 /// Asserts that `accel` is valid and answers every ray as brute force does, whichever way it is asked; `excused` rays
 /// may differ where brute force itself errs.
 pub fn assert_agrees(name: &str, mesh: &Arc<Mesh>, accel: &str, rays: &[Ray], excused: usize) {
+    assert_agrees_at(name, mesh, (accel, None), rays, excused);
+}
+
+/// As [`assert_agrees`], with a resolution.
+pub fn assert_agrees_at(
+    name: &str,
+    mesh: &Arc<Mesh>,
+    (accel, n): (&str, Option<u32>),
+    rays: &[Ray],
+    excused: usize,
+) {
     let kernel = "moller-trumbore";
-    let (brute, accel) = (built(mesh, "brute", kernel), built(mesh, accel, kernel));
+    let brute = built(mesh, "brute", kernel);
+    let accel = built_at(mesh, accel, n, kernel);
     accel
         .validate()
         .unwrap_or_else(|broken| panic!("{name}: {broken}"));

@@ -1,0 +1,226 @@
+//! The uniform grid: n³ cells over the smallest box, each listing the triangles that touch it.
+//!
+//! ```text
+//!   +---+---+---+---+
+//!   |   | .-+-. |   |      lattice     where the cells are: one boundary function
+//!   +---+/--+--\+---+      overlap     which cells a triangle touches
+//!   |   |\  |  /|  -+-->   lists       cell -> triangles, compact
+//!   +---+-`-+-'-+/--+      walk        ray -> cells, in order
+//!   |   |   | / |   |      mailbox     a triangle in two cells is tested once
+//!   +---+---/---+---+      predict     what it will cost, and the best n
+//! ```
+//!
+//! A ray stops before the first cell that begins beyond the nearest hit: "keep the best, stop when beyond". Hits outside
+//! the cell in which they are found count, so nothing is lost at cell planes.
+//!
+//! **Source:** A. Fujimoto, T. Tanaka and K. Iwata, "ARTS: Accelerated Ray-Tracing System", IEEE CG&A 6(4), 1986;
+//! each part names its own. **Differs:** cells are closed and padded, and everything spatial is computed in `f64`
+//! (see `lattice`), so no ray and no triangle falls between two cells.
+
+use std::marker::PhantomData;
+
+use crate::geometry::Ray;
+use crate::registry::{ParamKind, ParamSpec, Params};
+use crate::scene::Mesh;
+
+use super::{
+    Accelerator, AcceleratorEntry, BuildError, BuildRequest, MAX_N, Resolution, Structure,
+    StructureStats, Visitor, finish,
+};
+
+mod lattice;
+mod lists;
+mod mailbox;
+mod overlap;
+mod predict;
+#[cfg(test)]
+mod tests;
+mod validate;
+mod walk;
+
+use lattice::{Lattice, Shape};
+use lists::Lists;
+use mailbox::{Forgetful, Hashed, Mailbox};
+use overlap::{Boxes, Separating, ThreeTest};
+use predict::Model;
+use walk::Walk;
+
+pub(super) const ENTRY: AcceleratorEntry = AcceleratorEntry {
+    name: "grid",
+    about: "Uniform grid over the smallest box; cells list the triangles that touch them.",
+    paper: "Fujimoto et al. 1986, ARTS; Amanatides and Woo 1987; Lagae and Dutré 2008",
+    params: &[
+        ParamSpec {
+            name: "overlap",
+            about: "How a triangle is found to touch a cell: vertices, edges and diagonals; separating axes; or boxes.",
+            kind: ParamKind::Choice(&["three-test", "sat", "bbox"]),
+            default: "three-test",
+        },
+        ParamSpec {
+            name: "mailbox",
+            about: "Whether a triangle listed in several cells is tested once a ray.",
+            kind: ParamKind::Choice(&["on", "off"]),
+            default: "on",
+        },
+        ParamSpec {
+            name: "shape",
+            about: "n cells on every axis, or n on the longest and cells as cubic as possible.",
+            kind: ParamKind::Choice(&["n3", "cubic"]),
+            default: "n3",
+        },
+    ],
+    resolution: Some(Resolution {
+        auto: |mesh, params| Model::new(mesh, Settings::read(params)).best().0,
+        predict: |mesh, params, n| Model::new(mesh, Settings::read(params)).predict(n),
+    }),
+    build,
+};
+
+/// How a triangle is found to touch a cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum OverlapTest {
+    Three,
+    Separating,
+    Boxes,
+}
+
+/// The parameters, read.
+#[derive(Debug, Clone, Copy)]
+struct Settings {
+    overlap: OverlapTest,
+    mailbox: bool,
+    shape: Shape,
+}
+
+impl Settings {
+    fn read(params: &Params) -> Self {
+        Self {
+            overlap: match params.text("overlap") {
+                "sat" => OverlapTest::Separating,
+                "bbox" => OverlapTest::Boxes,
+                _ => OverlapTest::Three,
+            },
+            mailbox: params.text("mailbox") != "off",
+            shape: match params.text("shape") {
+                "cubic" => Shape::Cubic,
+                _ => Shape::N3,
+            },
+        }
+    }
+
+    /// Whether every cell of a triangle's box lists it.
+    fn lists_boxes(self) -> bool {
+        self.overlap == OverlapTest::Boxes
+    }
+}
+
+fn build(request: &BuildRequest) -> Result<Box<dyn Accelerator>, BuildError> {
+    let settings = Settings::read(request.params);
+    let n = request.n.unwrap_or(1).max(1);
+    if settings.mailbox {
+        finish(Grid::<Hashed>::new(request, settings, n)?, request)
+    } else {
+        finish(Grid::<Forgetful>::new(request, settings, n)?, request)
+    }
+}
+
+/// The structure `grid`.
+struct Grid<M> {
+    lattice: Lattice,
+    lists: Lists,
+    mailbox: PhantomData<M>,
+}
+
+impl<M> Grid<M> {
+    /// Builds the grid of `request.mesh` at `n`.
+    ///
+    /// # Errors
+    /// It would take more memory than allowed, by prediction before anything is allocated, or by count while the
+    /// references are found.
+    fn new(request: &BuildRequest, settings: Settings, n: u32) -> Result<Self, BuildError> {
+        let mesh: &Mesh = request.mesh;
+        let model = Model::new(mesh, settings);
+        let limit = request.memory_limit;
+        let refuse = |predicted_bytes, largest_n| BuildError::TooLarge {
+            accel: ENTRY.name,
+            n,
+            predicted_bytes,
+            limit_bytes: limit,
+            largest_n,
+        };
+        if n > MAX_N || model.bytes(n) > limit {
+            return Err(refuse(model.bytes(n), model.largest_n(limit)));
+        }
+        let lattice = Lattice::new(mesh.bounds(), model.dims(n));
+        let most = (limit - lists::bytes(lattice.len(), 0).min(limit)) / size_of::<u32>() as u64;
+        let lists = match settings.overlap {
+            OverlapTest::Three => Lists::build::<ThreeTest>(&lattice, mesh, most),
+            OverlapTest::Separating => Lists::build::<Separating>(&lattice, mesh, most),
+            OverlapTest::Boxes => Lists::build::<Boxes>(&lattice, mesh, most),
+        };
+        match lists {
+            Some(lists) => Ok(Self {
+                lattice,
+                lists,
+                mailbox: PhantomData,
+            }),
+            // The model was too low for this mesh, by an unknown factor: half the resolution is a safe advice.
+            None => Err(refuse(limit + 1, (n / 2).min(model.largest_n(limit)))),
+        }
+    }
+}
+
+impl<M: Mailbox> Structure for Grid<M> {
+    type Scratch = M;
+
+    fn scratch(&self) -> M {
+        M::default()
+    }
+
+    #[inline(always)]
+    fn traverse<V: Visitor>(&self, ray: &Ray, mailbox: &mut M, visitor: &mut V) {
+        let Some(mut walk) = Walk::new(&self.lattice, ray) else {
+            return;
+        };
+        mailbox.begin();
+        loop {
+            let list = self.lists.of(walk.cell);
+            let exit = walk.exit();
+            visitor.step(
+                walk.cell as u64,
+                true,
+                list.len() as u32,
+                walk.base + walk.entry,
+                walk.base + exit.1,
+            );
+            for &prim in list {
+                if mailbox.takes(prim) && visitor.test(prim) {
+                    return;
+                }
+            }
+            if !walk.advance(exit, visitor.t_limit()) {
+                return;
+            }
+        }
+    }
+
+    fn stats(&self) -> StructureStats {
+        let cells = self.lists.offsets.windows(2).map(|pair| pair[1] - pair[0]);
+        StructureStats {
+            cells: self.lattice.len(),
+            empty_cells: cells.clone().filter(|&len| len == 0).count() as u64,
+            references: self.lists.prims.len() as u64,
+            depth: 0,
+            longest_list: cells.max().unwrap_or(0),
+            dims: Some(self.lattice.dims),
+        }
+    }
+
+    fn memory_bytes(&self) -> u64 {
+        self.lists.bytes()
+    }
+
+    fn validate(&self, mesh: &Mesh) -> Result<(), String> {
+        validate::check(&self.lattice, &self.lists, mesh)
+    }
+}

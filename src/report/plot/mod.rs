@@ -1,0 +1,177 @@
+//! Plots of a report as they would stand in a paper: one figure a combination of scene, kernel, ray set and threads.
+//!
+//! ```text
+//! Report --series--> curves --figure--> lines or dots on a sheet --canvas--> SVG --raster--> PNG
+//! ```
+//!
+//! | figure | panels |
+//! |---|---|
+//! | `speed` | rays/s with its interval, the fastest n, the predicted best n and its ties |
+//! | `work` | steps and tests of a ray, measured and predicted |
+//! | `cost` | build time and memory |
+//!
+//! Equal reports give equal bytes: nothing here knows the time, the machine or its fonts.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use super::Report;
+use super::export::{ExportError, make, put};
+use super::series::{PanelKey, panels};
+
+mod axis;
+mod canvas;
+mod dots;
+mod figure;
+mod font;
+mod labels;
+mod lines;
+mod plane;
+mod raster;
+mod theme;
+
+pub use figure::Kind;
+
+/// How the other formats write numbers and names, the same as figures do.
+pub(super) mod text {
+    pub(in crate::report) use super::axis::{measured, number};
+    pub(in crate::report) use super::canvas::escape;
+}
+
+use figure::Style;
+
+/// How a figure is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum PlotFormat {
+    /// SVG whose colours follow the reader's preference for light or dark.
+    Svg,
+    /// PNG, dark on white.
+    Png,
+    /// PNG, light on dark.
+    PngDark,
+}
+
+impl PlotFormat {
+    /// What follows a figure's name.
+    const fn suffix(self) -> &'static str {
+        match self {
+            Self::Svg => ".svg",
+            Self::Png => ".png",
+            Self::PngDark => "-dark.png",
+        }
+    }
+}
+
+/// Writes all figures of `report` into `dir`, which is made where it is missing; returns the files in the order of the
+/// report. A report without values gives no figure.
+///
+/// # Errors
+/// A folder or file that cannot be written.
+pub fn write_all(
+    report: &Report,
+    dir: &Path,
+    formats: &[PlotFormat],
+) -> Result<Vec<PathBuf>, ExportError> {
+    make(dir)?;
+    let mut files = Vec::new();
+    for (name, key, kind) in figures(report) {
+        for &format in formats {
+            let draw = |why| ExportError::Draw {
+                figure: name.clone(),
+                why,
+            };
+            let (theme, adapts) = match format {
+                PlotFormat::Svg => (&theme::LIGHT, true),
+                PlotFormat::Png => (&theme::LIGHT, false),
+                PlotFormat::PngDark => (&theme::DARK, false),
+            };
+            let style = Style { theme, adapts };
+            let Some(svg) = figure::svg(report, &key, kind, style).map_err(draw)? else {
+                continue;
+            };
+            let content = match format {
+                PlotFormat::Svg => svg.into_bytes(),
+                PlotFormat::Png | PlotFormat::PngDark => raster::png(&svg).map_err(draw)?,
+            };
+            files.push(put(dir, &format!("{name}{}", format.suffix()), content)?);
+        }
+    }
+    Ok(files)
+}
+
+/// One figure of `report` as SVG that follows the reader's preference for light or dark; `None` without values.
+///
+/// # Errors
+/// A figure that cannot be drawn.
+pub fn svg(report: &Report, key: &PanelKey, kind: Kind) -> Result<Option<String>, ExportError> {
+    let style = Style {
+        theme: &theme::LIGHT,
+        adapts: true,
+    };
+    figure::svg(report, key, kind, style).map_err(|why| ExportError::Draw {
+        figure: format!("{key}: {}", kind.name()),
+        why,
+    })
+}
+
+/// All figures of `report` with the names of their files, without ending: `speed-teapot-woop-primary-1t`.
+fn figures(report: &Report) -> Vec<(String, PanelKey, Kind)> {
+    let mut used: BTreeMap<String, usize> = BTreeMap::new();
+    let mut figures = Vec::new();
+    for key in panels(&report.runs) {
+        let mut stem = file_stem(&key);
+        // Scenes that differ only in characters a file name cannot have are numbered in the order of the report.
+        let count = used.entry(stem.clone()).or_default();
+        *count += 1;
+        if *count > 1 {
+            stem = format!("{stem}-{count}");
+        }
+        for kind in Kind::ALL {
+            figures.push((format!("{}-{stem}", kind.name()), key.clone(), kind));
+        }
+    }
+    figures
+}
+
+/// A name that every file system takes: lower-case letters, digits, `.` and single hyphens. Of a path, the file's name.
+fn file_stem(key: &PanelKey) -> String {
+    let last = |spec: &str| {
+        let name = spec.rsplit(['/', '\\']).find(|part| !part.is_empty());
+        name.unwrap_or(spec).to_owned()
+    };
+    let parts = [
+        last(&key.scene),
+        key.kernel.clone(),
+        last(&key.rays),
+        format!("{}t", key.threads),
+    ];
+    parts
+        .iter()
+        .map(|part| sanitised(part))
+        .collect::<Vec<_>>()
+        .join("-")
+}
+
+fn sanitised(part: &str) -> String {
+    let mut out = String::new();
+    for c in part.chars() {
+        if c.is_ascii_alphanumeric() || (c == '.' && !out.is_empty()) {
+            out.push(c.to_ascii_lowercase());
+        } else if !out.is_empty() && !out.ends_with('-') {
+            out.push('-');
+        }
+        // Most file systems take 255 bytes a name; four parts, the kind and the ending fit well below.
+        if out.len() >= 48 {
+            break;
+        }
+    }
+    let out = out.trim_end_matches(['-', '.']);
+    if out.is_empty() {
+        "x".to_owned()
+    } else {
+        out.to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,187 @@
+//! Reports of every shape that plots must cope with.
+
+use crate::report::Report;
+use crate::report::Run;
+use crate::report::fixture::{N, params, report, run, run_of, summary, teapot};
+use crate::stats::Summary;
+
+/// Named reports, from the everyday to the nasty.
+pub(super) fn all() -> Vec<(&'static str, Report)> {
+    vec![
+        ("everyday", teapot()),
+        ("single-run", report(vec![run("grid", Some(16))])),
+        ("single-tree", report(vec![run("bvh", None)])),
+        ("one-line", report(over_n("grid", &N))),
+        ("two-points", report(over_n("grid", &[16, 32]))),
+        (
+            "trees-only",
+            report(
+                ["brute", "kd-tree", "bvh", "bvh-wide", "octree"]
+                    .map(|a| run(a, None))
+                    .to_vec(),
+            ),
+        ),
+        ("parameters", parameters()),
+        ("many", many()),
+        ("crossing", crossing()),
+        ("narrow", narrow()),
+        ("zeros", zeros()),
+        ("huge", huge()),
+        ("missing", missing()),
+        ("long-names", long_names()),
+        ("short-lines", short_lines()),
+    ]
+}
+
+fn over_n(accel: &str, n: &[u32]) -> Vec<Run> {
+    n.iter().map(|&n| run(accel, Some(n))).collect()
+}
+
+/// Four grids with other parameters and two trees.
+fn parameters() -> Report {
+    let mut runs = Vec::new();
+    for (i, overlap) in ["three-test", "sat", "bbox"].iter().enumerate() {
+        for mut r in over_n("grid", &N[..15]) {
+            r.params = params(&[("overlap-rule", overlap), ("mailbox-kind", "off")]);
+            let factor = 1.0 - 0.11 * i as f64;
+            scale(&mut r.mrays_per_s, factor);
+            scale(&mut r.build_ms, 1.0 / factor);
+            if let Some(p) = &mut r.predicted {
+                p.n += 4 * i as u32;
+                p.plateau[0] += 3 * i as u32;
+            }
+            runs.push(r);
+        }
+    }
+    runs.extend(["kd-tree", "bvh"].map(|a| run(a, None)));
+    report(runs)
+}
+
+fn scale(s: &mut Summary, factor: f64) {
+    for x in [&mut s.median, &mut s.lo, &mut s.hi] {
+        *x *= factor;
+    }
+}
+
+/// Twelve lines over n and eight without.
+fn many() -> Report {
+    let mut runs = Vec::new();
+    for i in 0..12 {
+        for mut r in over_n(&format!("grid-{i}"), &N) {
+            scale(&mut r.mrays_per_s, 1.0 + 0.09 * f64::from(i));
+            runs.push(r);
+        }
+    }
+    for i in 0..8 {
+        runs.push(run(&format!("tree-{i}"), None));
+    }
+    report(runs)
+}
+
+/// Lines that cross twice and end at nearly the same place.
+fn crossing() -> Report {
+    let mut runs = Vec::new();
+    for (k, accel) in ["grid", "grid-skip", "grid-2level", "octree-n"]
+        .iter()
+        .enumerate()
+    {
+        for mut r in over_n(accel, &N) {
+            let x = f64::from(r.n.unwrap()).log2();
+            let y = 6.0 + (x * 0.9 + k as f64).sin() * 3.0 * (8.0 - x) / 8.0;
+            r.mrays_per_s = summary(y, 0.12, &format!("{accel}{x}"));
+            runs.push(r);
+        }
+    }
+    report(runs)
+}
+
+/// Everything within one percent.
+fn narrow() -> Report {
+    let mut report = teapot();
+    for (i, r) in report.runs.iter_mut().enumerate() {
+        r.mrays_per_s = summary(10.0 + 0.01 * i as f64, 0.002, &r.id);
+        r.build_ms = summary(3.0, 0.001, &r.id);
+        r.per_ray.steps.mean = 5.0 + 0.001 * i as f64;
+    }
+    report
+}
+
+/// Counts that are zero at places, or everywhere.
+fn zeros() -> Report {
+    let mut report = teapot();
+    for (i, r) in report.runs.iter_mut().enumerate() {
+        r.per_ray.tests.mean = 0.0;
+        if i % 5 == 0 {
+            r.per_ray.steps.mean = 0.0;
+            r.build_ms = Summary::default();
+        }
+    }
+    report
+}
+
+/// Twenty decades.
+fn huge() -> Report {
+    let mut report = teapot();
+    for (i, r) in report.runs.iter_mut().enumerate() {
+        r.mrays_per_s = summary(10.0_f64.powi(i as i32 - 8), 0.3, &r.id);
+        r.per_ray.tests.mean = 10.0_f64.powi(2 * i as i32);
+        r.memory_bytes = u64::MAX >> (2 * i);
+    }
+    report
+}
+
+/// Values that are absent or no numbers.
+fn missing() -> Report {
+    let mut report = teapot();
+    for (i, r) in report.runs.iter_mut().enumerate() {
+        match i % 4 {
+            0 => r.mrays_per_s = Summary::default(),
+            1 => r.build_ms.median = f64::NAN,
+            2 => r.mrays_per_s.lo = f64::NEG_INFINITY,
+            _ => r.per_ray.steps.mean = f64::INFINITY,
+        }
+        r.predicted = None;
+        r.valid = i != 3;
+    }
+    report.provenance = crate::report::Provenance::default();
+    report
+}
+
+fn long_names() -> Report {
+    let scene = "/data/models/architecture/2026-03/a-very-long-folder/sponza <atrium> & \"courtyard\".final.obj";
+    let mut runs: Vec<Run> = Vec::new();
+    for &n in &N[..13] {
+        let mut r = run_of(
+            scene,
+            262_267,
+            "file:/data/rays/bounce-of-sponza-at-noon.rays",
+            64,
+            "grid",
+            Some(n),
+        );
+        r.params = params(&[
+            ("overlap", "a-rule-with-a-long-name"),
+            ("traversal", "incremental-in-f64"),
+            ("zeta", "0.000001"),
+        ]);
+        runs.push(r);
+    }
+    runs.push(run_of(
+        scene,
+        262_267,
+        "file:/data/rays/bounce-of-sponza-at-noon.rays",
+        64,
+        "bvh",
+        None,
+    ));
+    report(runs)
+}
+
+/// Lines that end long before the axis does.
+fn short_lines() -> Report {
+    let mut runs = over_n("grid", &N);
+    runs.extend(over_n("grid-2level", &N[..8]));
+    runs.extend(over_n("grid-skip", &N[2..3]));
+    runs.push(run("bvh", None));
+    report(runs)
+}

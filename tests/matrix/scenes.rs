@@ -147,7 +147,7 @@ fn nasty() -> Vec<(&'static str, Triangles, bool)> {
             false,
         ),
         ("tiny", scaled(&ball(6), 1e-6), false),
-        ("subnormal", scaled(&ball(6), 1e-39), false),
+        ("subnormal", scaled(&ball(3), 1e-39), false),
         ("huge", scaled(&ball(6), 1e9), false),
         ("enormous", scaled(&ball(6), 1e30), false),
     ]

@@ -6,7 +6,7 @@
 
 use std::path::Path;
 
-use super::{Scene, SceneEntry, SceneError, family, obj};
+use super::{Scene, SceneEntry, SceneError, bundled, family, obj};
 use crate::registry::{ChoiceError, ParamSpec};
 
 /// The most triangles that a procedural scene may have: about 1 GB of mesh, far beyond what is worth waiting for.
@@ -15,9 +15,30 @@ pub const MAX_TRIANGLES: u64 = 20_000_000;
 /// All bundled scenes and procedural families.
 pub const SCENES: &[SceneEntry] = &[
     family::teapot::ROW,
+    bundled::CORNELL,
+    bundled::CABALLITO,
+    bundled::STAIRCASE,
+    bundled::PLANT,
+    family::sphereflake::ROW,
     family::soup::ROW,
+    family::city::ROW,
+    family::gears::ROW,
+    family::mountain::ROW,
+    family::rings::ROW,
+    family::tetra::ROW,
+    family::tree::ROW,
+    family::stadium::ROW,
+    family::menger::ROW,
+    family::needles::ROW,
+    family::nested::SHELLS,
+    family::nested::MATRYOSHKA,
     family::plane::ROW,
     family::lattice::ROW,
+    family::moved::OFFSET,
+    family::moved::OUTLIER,
+    family::degenerate::CLUSTER,
+    family::degenerate::DUPLICATES,
+    family::degenerate::AXIS_LINE,
     family::trivial::ONE,
     family::trivial::EMPTY,
 ];
@@ -49,6 +70,12 @@ impl Sizes {
                 .map(read)
                 .collect::<Result<_, _>>()?,
         ))
+    }
+
+    /// Sizes as a test wants them.
+    #[cfg(test)]
+    pub(super) fn of(sizes: impl IntoIterator<Item = Option<f64>>) -> Self {
+        Self(sizes.into_iter().collect())
     }
 
     /// The whole number at `index`; 0 where the row has no such parameter.

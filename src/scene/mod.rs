@@ -11,12 +11,14 @@ use sha2::{Digest, Sha256};
 use crate::geometry::Vec3;
 use crate::registry::ParamSpec;
 
+mod bundled;
 mod camera;
 mod catalog;
 mod error;
 pub mod family;
 mod mesh;
 mod obj;
+mod polygon;
 
 pub use camera::Camera;
 pub use catalog::{MAX_TRIANGLES, SCENES, Sizes, check, load};

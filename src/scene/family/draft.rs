@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
+use super::Icosphere;
 use crate::geometry::{DVec3, Vec3};
 use crate::scene::{BACKGROUND, Camera, Light, Material, Mesh, Scene, SceneError};
 
 /// Corners of a box's faces (−z, +z, −y, +y, −x, +x), counter-clockwise seen from outside; corner k has bits xyz.
-const CUBOID_FACES: [[usize; 4]; 6] = [
+pub(super) const CUBOID_FACES: [[usize; 4]; 6] = [
     [0, 2, 3, 1],
     [4, 5, 7, 6],
     [0, 1, 5, 4],
@@ -67,6 +68,23 @@ impl Draft {
         for face in CUBOID_FACES {
             self.quad(face.map(|k| corners[k]));
         }
+    }
+
+    /// Adds a sphere.
+    pub fn sphere(&mut self, unit: &Icosphere, centre: DVec3, radius: f64) {
+        let first = self.vertices.len() as u32;
+        for &point in &unit.points {
+            self.vertex(centre + point * radius);
+        }
+        let own = unit.triangles.iter().map(|t| t.map(|i| i + first));
+        self.triangles.extend(own);
+    }
+
+    /// Adds the square of half side `reach` around the z axis at `height`, facing up: two triangles.
+    pub fn floor(&mut self, reach: f64, height: f64) {
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        let corners = corners.map(|(x, y)| self.vertex(DVec3::new(x * reach, y * reach, height)));
+        self.quad(corners);
     }
 
     /// Gives all triangles that have no material yet the next one.

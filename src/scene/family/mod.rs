@@ -3,16 +3,31 @@
 //! Built from [`Draft`], seeded with PCG32, and the same on every machine: only `+ − × ÷ √` decide coordinates, which
 //! IEEE 754 rounds alike everywhere.
 
+pub mod city;
+pub mod degenerate;
 mod draft;
-mod random;
-
+mod exact;
+pub mod gears;
+pub(super) mod icosphere;
 pub mod lattice;
+pub mod menger;
+pub mod mountain;
+pub mod moved;
+pub mod needles;
+pub mod nested;
 pub mod plane;
+mod random;
+pub mod rings;
 pub mod soup;
+pub mod sphereflake;
+pub mod stadium;
 pub mod teapot;
+pub mod tetra;
+pub mod tree;
 pub mod trivial;
 
 use draft::Draft;
+pub(super) use icosphere::Icosphere;
 use random::Random;
 
 /// Whether each directed edge occurs once and its reverse once: a closed surface, consistently oriented.

@@ -2,7 +2,7 @@
 //!
 //! Up to s = 0.5 the uniform grid's best case; at s = 8 every cell holds nearly everything.
 
-use super::{Draft, Random, draft::matte};
+use super::{Draft, Random, draft::matte, exact};
 use crate::geometry::Vec3;
 use crate::registry::{ParamKind, ParamSpec};
 use crate::scene::{Scene, SceneEntry, SceneError, Sizes};
@@ -42,7 +42,7 @@ fn build(sizes: &Sizes) -> Result<Scene, SceneError> {
     let (n, s) = (sizes.int(0), sizes.float(1));
     let mut draft = Draft::new(Vec3::Y);
     let mut random = Random::new(1);
-    let edge = s / cube_root(f64::from(n));
+    let edge = s / exact::root(f64::from(n), 3);
     draft.vertices.reserve(3 * n as usize);
     for _ in 0..n {
         let centre = random.cube(0.0, 1.0);
@@ -53,19 +53,8 @@ fn build(sizes: &Sizes) -> Result<Scene, SceneError> {
     draft.finish()
 }
 
-/// The cube root of `x` ≥ 1 by Newton's method, which is the same on every machine as `cbrt` need not be.
-fn cube_root(x: f64) -> f64 {
-    // From above the root it falls monotonically; 100 halvings and more reach it from any f64.
-    let mut y = x;
-    for _ in 0..100 {
-        y = (2.0 * y + x / (y * y)) / 3.0;
-    }
-    y
-}
-
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::scene::load;
 
     #[test]
@@ -84,12 +73,5 @@ mod tests {
             load("soup:50").unwrap().mesh,
             load("soup:50,1").unwrap().mesh
         );
-    }
-
-    #[test]
-    fn the_cube_root_is_right_from_one_to_millions() {
-        for x in [1.0_f64, 8.0, 1000.0, 2e7] {
-            assert!((cube_root(x) - x.cbrt()).abs() < 1e-12 * x.cbrt());
-        }
     }
 }

@@ -94,6 +94,18 @@ pub(super) fn pot(n: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     (points, triangles)
 }
 
+/// The pot at length 1, standing on z = 0, its box centred about the z axis.
+pub(super) fn unit_pot(n: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let (mut points, triangles) = pot(n);
+    let least = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+    let most = points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+    let middle = ((least + most) * 0.5).with_z(least.z);
+    for point in &mut points {
+        *point = (*point - middle) / (most.x - least.x) + DVec3::ZERO;
+    }
+    (points, triangles)
+}
+
 fn triangles_of(n: u32) -> usize {
     triangles(u64::from(n)) as usize
 }

@@ -15,7 +15,6 @@
 mod clean;
 mod lines;
 mod mtl;
-mod polygon;
 
 use std::collections::HashMap;
 use std::fs::File;
@@ -25,7 +24,7 @@ use std::sync::Arc;
 
 use self::clean::{Clean, Facts};
 use self::lines::Failure;
-use self::polygon::Cutter;
+use super::polygon::Cutter;
 use super::{BACKGROUND, Camera, Material, Mesh, Scene, SceneError};
 use crate::geometry::Vec3;
 
@@ -391,7 +390,7 @@ fn doubtful(mesh: &Mesh, not_covered: u64) -> Vec<String> {
     let kinds = [
         (
             not_covered,
-            "polygons cross themselves or lie on a line; they are cut as fans",
+            "polygons are so warped that they cross themselves, or lie on a line; they are cut as fans",
         ),
         (
             mesh.degenerate() as u64,

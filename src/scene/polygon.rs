@@ -13,8 +13,9 @@
 //!
 //! **Source:** Newell's normal (Sutherland, Sproull, Schumacker 1974); ears by the crate earcut.
 //!
-//! **Differs:** the polygon is flattened along the longest axis of its normal instead of turned into its plane, because
-//! that rounds nothing and keeps straight sides straight. Corners that earcut drops as collinear are put back.
+//! **Differs:** the polygon is first flattened along the longest axis of its normal, because that rounds nothing and keeps
+//! straight sides straight; only where it is so warped that it crosses itself there, onto the plane across its normal.
+//! Corners that earcut drops as collinear are put back.
 
 use std::collections::{HashMap, HashSet};
 
@@ -45,38 +46,40 @@ impl Cutter {
     ///
     /// They do not where it crosses itself or lies on a line; then they are a fan from the first corner.
     pub fn cut(&mut self, corners: &[DVec3]) -> (&[[u32; 3]], bool) {
-        self.flatten(corners);
         let n = corners.len() as u32;
-        self.triangles.clear();
-        self.triangles.extend((1..n - 1).map(|i| [0, i, i + 1]));
-        if self.triangles.iter().all(|t| turn(&self.flat, *t) > 0.0) {
-            return (&self.triangles, true);
+        let normal = newell(corners);
+        let mut covered = false;
+        for basis in [along_axis(normal), in_plane(normal)] {
+            self.flatten(corners, basis);
+            self.cut_fan(n);
+            if self.triangles.iter().all(|t| turn(&self.flat, *t) > 0.0) {
+                return (&self.triangles, true);
+            }
+            self.cut_ears();
+            covered = is_complete(n, &self.triangles);
+            if covered {
+                break;
+            }
         }
-        let fan = self.triangles.clone();
-        self.cut_ears();
-        let covered = is_complete(n, &self.triangles);
         if !covered {
-            self.triangles = fan;
+            self.cut_fan(n);
         }
         // Three corners are their own triangle, with or without area.
         (&self.triangles, covered || n == 3)
     }
 
-    /// Flattens the polygon so that it turns counter-clockwise.
-    fn flatten(&mut self, corners: &[DVec3]) {
+    /// Flattens the polygon onto two axes.
+    fn flatten(&mut self, corners: &[DVec3], [x, y]: [DVec3; 2]) {
         let origin = corners[0];
-        let pairs = || corners.iter().zip(corners.iter().cycle().skip(1));
-        let normal: DVec3 = pairs().map(|(a, b)| (*a - origin).cross(*b - origin)).sum();
-        let size = normal.abs();
-        let longest = (0..3).fold(0, |best, a| if size[a] > size[best] { a } else { best });
-        // The other two axes in the order in which they turn about the normal.
-        let (mut x, mut y) = ((longest + 1) % 3, (longest + 2) % 3);
-        if normal[longest] < 0.0 {
-            std::mem::swap(&mut x, &mut y);
-        }
+        let flat = |&p: &DVec3| [(p - origin).dot(x), (p - origin).dot(y)];
         self.flat.clear();
-        self.flat
-            .extend(corners.iter().map(|&p| [(p - origin)[x], (p - origin)[y]]));
+        self.flat.extend(corners.iter().map(flat));
+    }
+
+    /// Cuts from the first corner to all others.
+    fn cut_fan(&mut self, n: u32) {
+        self.triangles.clear();
+        self.triangles.extend((1..n - 1).map(|i| [0, i, i + 1]));
     }
 
     /// Cuts by earcut, in the polygon's direction and with collinear corners put back.
@@ -92,6 +95,33 @@ impl Cutter {
         }
         restore(self.flat.len() as u32, &mut self.triangles);
     }
+}
+
+/// Newell's normal: twice the area of the polygon in each coordinate plane, whether it is flat or not.
+fn newell(corners: &[DVec3]) -> DVec3 {
+    let origin = corners[0];
+    let sides = corners.iter().zip(corners.iter().cycle().skip(1));
+    sides.map(|(a, b)| (*a - origin).cross(*b - origin)).sum()
+}
+
+/// The two axes other than the longest of `normal`, in the order in which they turn about it.
+fn along_axis(normal: DVec3) -> [DVec3; 2] {
+    let size = normal.abs();
+    let longest = (0..3).fold(0, |best, a| if size[a] > size[best] { a } else { best });
+    let x = DVec3::AXES[(longest + 1) % 3];
+    let y = DVec3::AXES[(longest + 2) % 3];
+    if normal[longest] < 0.0 {
+        [y, x]
+    } else {
+        [x, y]
+    }
+}
+
+/// Two axes in the plane across `normal`, in the order in which they turn about it.
+fn in_plane(normal: DVec3) -> [DVec3; 2] {
+    let normal = normal.normalize_or(DVec3::Z);
+    let x = normal.any_orthonormal_vector();
+    [x, normal.cross(x)]
 }
 
 /// Twice the signed area of a triangle: positive where it turns counter-clockwise.

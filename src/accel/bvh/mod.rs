@@ -226,7 +226,9 @@ impl Structure for Bvh {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testbed::{assert_agrees, geometric, mesh, nasty, rays, soup, sphere};
+    use super::super::testbed::{
+        assert_agrees, geometric, mesh, nasty, ray_count, rays, soup, sphere,
+    };
     use super::*;
     use proptest::prelude::*;
 
@@ -237,7 +239,7 @@ mod tests {
     #[test]
     fn nasty_meshes_are_answered_as_by_brute_force() {
         for (name, mesh) in nasty() {
-            assert_agrees(name, &mesh, "bvh", &rays(&mesh, 2000, 7), 0);
+            assert_agrees(name, &mesh, "bvh", &rays(&mesh, ray_count(&mesh), 7));
         }
     }
 
@@ -245,7 +247,7 @@ mod tests {
     fn leaves_of_one_and_of_many_answer_alike() {
         let mesh = mesh(&soup(300, 0.3, 8));
         for accel in ["bvh:leaf=1", "bvh:leaf=64"] {
-            assert_agrees(accel, &mesh, accel, &rays(&mesh, 1000, 9), 0);
+            assert_agrees(accel, &mesh, accel, &rays(&mesh, 1000, 9));
         }
     }
 
@@ -274,25 +276,26 @@ mod tests {
 
     #[test]
     fn the_depth_stays_bounded_where_splits_peel_off_one_triangle_at_a_time() {
-        let mesh = mesh(&geometric(149).repeat(20));
+        let mesh = mesh(&geometric(-120..149).repeat(20));
         let bvh = Bvh::build(&mesh, &defaults());
         bvh.validate(&mesh).expect("valid");
-        assert!(bvh.stats().depth > 32, "the mesh is no trap");
+        assert!(bvh.stats().depth > 60, "the mesh is no trap");
     }
 
     #[test]
-    fn a_closed_sphere_is_tested_sparsely() {
+    fn near_children_first_leaves_few_tests_of_a_closed_sphere() {
         let mesh = mesh(&sphere(64));
         let accel = super::super::testbed::built(&mesh, "bvh", "moller-trumbore");
         let rays = rays(&mesh, 1000, 11);
         let mut hits = vec![crate::geometry::Hit::MISS; rays.len()];
         let mut counts = vec![super::super::Counts::default(); rays.len()];
         accel.closest_counted(&rays, &mut hits, &mut counts);
-        let tests: u64 = counts.iter().map(|c| c.tests).sum();
-        let steps: u64 = counts.iter().map(|c| c.steps).sum();
-        // Measured 9 tests and 27 steps a ray of 8,192 triangles.
-        assert!(tests < 20 * rays.len() as u64, "{tests}");
-        assert!(steps < 60 * rays.len() as u64, "{steps}");
+        let mean = |of: fn(&super::super::Counts) -> u64| {
+            counts.iter().map(of).sum::<u64>() as f64 / rays.len() as f64
+        };
+        // 19.1 steps and 5.5 tests of 8,192 triangles; with the farther child first 33 steps.
+        assert!(mean(|c| c.steps) < 21.0, "{}", mean(|c| c.steps));
+        assert!(mean(|c| c.tests) < 6.5, "{}", mean(|c| c.tests));
     }
 
     proptest! {
@@ -304,7 +307,7 @@ mod tests {
             seed in any::<u64>(),
         ) {
             let mesh = mesh(&soup(count, size, seed));
-            assert_agrees("soup", &mesh, "bvh", &rays(&mesh, 200, seed ^ 1), 0);
+            assert_agrees("soup", &mesh, "bvh", &rays(&mesh, 200, seed ^ 1));
         }
     }
 }

@@ -16,7 +16,8 @@
 //! **Source:** I. Wald and V. Havran, "On building fast kd-Trees for Ray Tracing, and on doing that in O(N log N)",
 //! 2006, for the build; M. Pharr, W. Jakob and G. Humphreys, "Physically Based Rendering", 3rd ed., §4.4, for the nodes.
 //! **Differs:** the near side is told by the direction, not by the origin, so an origin on a plane is no special case;
-//! planes on the faces of a cell are not considered, so no cell is flat unless the scene is.
+//! planes on the faces of a cell are not considered, so no cell is flat unless the scene is; the bonus for empty space
+//! asks for a tenth of the cell, else a fan of triangles around a vertex is trimmed by slivers without end.
 
 use crate::geometry::{Aabb, Ray};
 use crate::registry::{ParamKind, ParamSpec, Params};
@@ -223,7 +224,9 @@ impl Structure for KdTree {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testbed::{assert_agrees, built, geometric, mesh, nasty, rays, soup, sphere};
+    use super::super::testbed::{
+        assert_agrees, built, geometric, mesh, nasty, ray_count, rays, soup, sphere,
+    };
     use super::*;
     use proptest::prelude::*;
 
@@ -237,7 +240,7 @@ mod tests {
     fn nasty_meshes_are_answered_as_by_brute_force() {
         for (name, mesh) in nasty() {
             for accel in ["kd-tree", "kd-tree:clip=off"] {
-                assert_agrees(name, &mesh, accel, &rays(&mesh, 2000, 7), 0);
+                assert_agrees(name, &mesh, accel, &rays(&mesh, ray_count(&mesh), 7));
             }
         }
     }
@@ -261,7 +264,7 @@ mod tests {
 
     #[test]
     fn the_depth_stays_bounded_where_planes_peel_off_one_triangle_at_a_time() {
-        let stats = tree(&mesh(&geometric(149).repeat(20))).stats();
+        let stats = tree(&mesh(&geometric(-120..149).repeat(20))).stats();
         assert!(
             stats.depth > 20 && stats.depth <= MAX_DEPTH as u32,
             "{stats:?}"
@@ -301,7 +304,7 @@ mod tests {
             seed in any::<u64>(),
         ) {
             let mesh = mesh(&soup(count, size, seed));
-            assert_agrees("soup", &mesh, "kd-tree", &rays(&mesh, 200, seed ^ 1), 0);
+            assert_agrees("soup", &mesh, "kd-tree", &rays(&mesh, 200, seed ^ 1));
         }
     }
 }

@@ -14,6 +14,10 @@ pub(super) const COSTS: Costs = Costs {
 /// A split that cuts off empty space costs this part of what it would (Wald and Havran, §3.3).
 const EMPTY_BONUS: f64 = 0.8;
 
+/// The part of a cell's extent that must be empty for the bonus. Without this a leaf of four triangles around a vertex
+/// is trimmed by ever thinner slivers, since the bonus alone pays for each of them.
+const LEAST_EMPTY: f64 = 0.1;
+
 /// Above this many events the axes are swept in parallel.
 const PARALLEL: usize = 8192;
 
@@ -53,16 +57,18 @@ fn sweep(cell: &Aabb, axis: usize, parts: usize, events: &[Event]) -> Option<Pla
     let (start, end) = (cell.min[axis], cell.max[axis]);
     let extent = |axis: usize| f64::from(cell.max[axis]) - f64::from(cell.min[axis]);
     let (u, v) = (extent((axis + 1) % 3), extent((axis + 2) % 3));
-    // Probability that a line through the cell meets the box from `from` to `to` within it.
-    let share = |from: f32, to: f32| (u * v + (f64::from(to) - f64::from(from)) * (u + v)) / area;
-    let cost = |below: f64, below_count: usize, above: f64, above_count: usize| {
-        let tests = below * below_count as f64 + above * above_count as f64;
-        let bonus = if below_count == 0 || above_count == 0 {
-            EMPTY_BONUS
-        } else {
-            1.0
-        };
-        bonus * (COSTS.step + COSTS.test * tests)
+    // What the cell costs if it is split at `place` into sides with so many parts: the probability that a line through
+    // the cell meets a side, times the tests there.
+    let whole = extent(axis);
+    let cost = |place: f32, below_count: usize, above_count: usize| {
+        let below = f64::from(place) - f64::from(start);
+        let above = f64::from(end) - f64::from(place);
+        let tests = (u * v + below * (u + v)) * below_count as f64
+            + (u * v + above * (u + v)) * above_count as f64;
+        let empty = (below_count == 0 && below >= LEAST_EMPTY * whole)
+            || (above_count == 0 && above >= LEAST_EMPTY * whole);
+        let bonus = if empty { EMPTY_BONUS } else { 1.0 };
+        bonus * (COSTS.step + COSTS.test * tests / area)
     };
 
     let mut best: Option<Plane> = None;
@@ -82,10 +88,9 @@ fn sweep(cell: &Aabb, axis: usize, parts: usize, events: &[Event]) -> Option<Pla
         let (ended, planar, started) = (take(Kind::End), take(Kind::Planar), take(Kind::Start));
         above_count -= planar + ended;
         if place > start && place < end {
-            let (below, above) = (share(start, place), share(place, end));
             let sides = [
-                (true, cost(below, below_count + planar, above, above_count)),
-                (false, cost(below, below_count, above, above_count + planar)),
+                (true, cost(place, below_count + planar, above_count)),
+                (false, cost(place, below_count, above_count + planar)),
             ];
             for (planar_below, cost) in sides {
                 if best.is_none_or(|b| cost < b.cost) {

@@ -4,7 +4,7 @@ use crate::shade::{Image, to_linear};
 
 use super::ColorMode;
 use super::fit::fit;
-use super::palette::{five_bits, nearest_16, nearest_256};
+use super::palette::{five_bits, nearest_16, nearest_256, nearest_shade};
 use super::sample::resampled;
 use super::symbols::{RAMP, Symbols};
 
@@ -71,17 +71,19 @@ impl Cells {
     /// `image` in `columns` by `rows` cells, as well as `symbols` can show it in `mode`.
     ///
     /// Render the image in the size that [`super::pixel_size`] names: then nothing is stretched, and half blocks in
-    /// true colour show every pixel exactly. Without colours characters stand for brightness, whatever the symbols.
+    /// true colour show every pixel exactly. Without colours characters stand for brightness, whatever the symbols, and
+    /// with sixteen colours shade characters mix them: blocks of so few colours show outlines only.
     #[must_use]
     pub fn of(image: &Image, columns: u16, rows: u16, symbols: &Symbols, mode: ColorMode) -> Self {
         let (wide, high) = (
             usize::from(columns) * symbols.across,
             usize::from(rows) * symbols.down,
         );
-        let ramp = symbols.is_ramp() || mode == ColorMode::None;
-        let cells = if ramp {
-            let colours = resampled(image, usize::from(columns), usize::from(rows));
-            colours.into_iter().map(|c| ramp_cell(c, mode)).collect()
+        let one_each = || resampled(image, usize::from(columns), usize::from(rows)).into_iter();
+        let cells = if symbols.is_ramp() || mode == ColorMode::None {
+            one_each().map(|colour| ramp_cell(colour, mode)).collect()
+        } else if mode == ColorMode::Ansi16 {
+            one_each().map(shade_cell).collect()
         } else {
             let pixels = resampled(image, wide, high);
             let mut cells = Vec::with_capacity(usize::from(columns) * usize::from(rows));
@@ -167,6 +169,15 @@ fn ramp_cell(colour: [u8; 3], mode: ColorMode) -> Cell {
     }
 }
 
+/// The mixture of named colours that looks like `colour`.
+fn shade_cell(colour: [u8; 3]) -> Cell {
+    let shade = nearest_shade(colour);
+    two_inks(shade.symbol, Ink::Named(shade.fg), Ink::Named(shade.bg))
+}
+
+/// Lightness up to which a cell stays empty: the grounds of scenes, which would only distract as a field of dots.
+const EMPTY: f32 = 0.23;
+
 /// Which of the ramp's characters is as bright: equal steps of lightness (CIE L*), which the eye sees as equal.
 fn ramp_step(colour: [u8; 3]) -> usize {
     let [r, g, b] = to_linear(colour).to_array();
@@ -176,7 +187,9 @@ fn ramp_step(colour: [u8; 3]) -> usize {
     } else {
         9.033 * luminance
     };
-    ((lightness * RAMP.len() as f32) as usize).min(RAMP.len() - 1)
+    let place = (lightness - EMPTY) / (1.0 - EMPTY);
+    // Below 0 the nearest integer is 0.
+    ((place * RAMP.len() as f32).ceil() as usize).min(RAMP.len() - 1)
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! The legend of a heat map as one line of cells.
 //!
 //! ```text
-//!   cells visited by each ray  0 ░░░░│▒▒▒▒▒▒▓▓▓▓▓▓▓███████ 92  median 14, logarithmic
-//!                                    └ the median
+//!   cells per ray  1 ░░░░│▒▒▒▒▒▒▓▓▓▓▓▓▓███████ 92  median 14, log scale
+//!                      └ the median
 //! ```
 
 use crate::shade::Legend;
@@ -120,7 +120,7 @@ mod tests {
 
     #[test]
     fn a_narrow_line_leaves_out_the_title_then_the_median_then_all() {
-        assert!(!text(50).contains("tested") && text(50).contains("median"));
+        assert!(!text(46).contains("tests") && text(46).contains("median"));
         assert!(!text(20).contains("median") && text(20).contains('|'));
         assert_eq!(text(5), "     \n");
         for columns in [0, 1, 10, 30, 60, 200] {

@@ -1,12 +1,14 @@
-//! Nearest palette entries: 256 colours, 16 colours, 5 bits a channel.
+//! Nearest palette entries: 256 colours, 16 colours with shades, 5 bits a channel.
 //!
-//! Distance is squared, in sRGB, with red, green and blue weighted 2 : 4 : 3, about as the eye notices them. The weights
-//! keep the axes apart, so the nearest entry of the cube is found one axis at a time.
+//! Distance is taken in Oklab with hue and chroma weighted twice as much as lightness: among entries that are equally
+//! near by brightness, a brown surface that darkens shall not turn green and pink in turn.
 //!
-//! **Source:** ISO 8613-6 and xterm for the palettes; Riemersma, "Colour metric" (2008), for the weights.
+//! **Source:** ISO 8613-6 and xterm for the palettes; Ottosson, "A perceptual color space" (2020), for Oklab.
 
-/// Weights of red, green and blue.
-const WEIGHTS: [i32; 3] = [2, 4, 3];
+use std::sync::LazyLock;
+
+use crate::geometry::Vec3;
+use crate::shade::{to_linear, to_srgb};
 
 /// Levels of the 6 × 6 × 6 cube, entries 16–231.
 const LEVELS: [u8; 6] = [0, 95, 135, 175, 215, 255];
@@ -31,16 +33,49 @@ const NAMED: [[u8; 3]; 16] = [
     [255, 255, 255],
 ];
 
-/// Weighted squared distance.
-fn distance(a: [u8; 3], b: [u8; 3]) -> i32 {
-    (0..3)
-        .map(|i| WEIGHTS[i] * (i32::from(a[i]) - i32::from(b[i])).pow(2))
-        .sum()
+/// Characters that show a foreground over a background, and the foreground's share of the cell.
+const SHADES: [(char, f32); 3] = [('░', 0.25), ('▒', 0.5), ('▓', 0.75)];
+
+/// A mixture of two of the sixteen named colours in one cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Shade {
+    /// A shade character, or a space for the background alone.
+    pub symbol: char,
+    /// Index of the foreground, 0–15.
+    pub fg: u8,
+    /// Index of the background, 0–15.
+    pub bg: u8,
+}
+
+/// `colour` in Oklab, hue and chroma weighted: distances between these are Euclidean.
+fn perceived(colour: [u8; 3]) -> Vec3 {
+    let [r, g, b] = to_linear(colour).to_array();
+    let l = (0.412_221_46 * r + 0.536_332_55 * g + 0.051_445_995 * b).cbrt();
+    let m = (0.211_903_5 * r + 0.680_699_5 * g + 0.107_396_96 * b).cbrt();
+    let s = (0.088_302_46 * r + 0.281_718_85 * g + 0.629_978_7 * b).cbrt();
+    let weight = 2.0;
+    Vec3::new(
+        0.210_454_26 * l + 0.793_617_8 * m - 0.004_072_047 * s,
+        weight * (1.977_998_5 * l - 2.428_592_2 * m + 0.450_593_7 * s),
+        weight * (0.025_904_037 * l + 0.782_771_77 * m - 0.808_675_77 * s),
+    )
+}
+
+/// The index of the nearest of `palette`; the lower of equals.
+fn nearest(palette: &[Vec3], colour: [u8; 3]) -> usize {
+    let wanted = perceived(colour);
+    let (mut best, mut least) = (0, f32::INFINITY);
+    for (i, entry) in palette.iter().enumerate() {
+        let distance = entry.distance_squared(wanted);
+        if distance < least {
+            (best, least) = (i, distance);
+        }
+    }
+    best
 }
 
 /// The colour of an entry from 16 to 255; black for the others, which differ from terminal to terminal.
-#[must_use]
-pub(super) fn entry(index: u8) -> [u8; 3] {
+fn entry(index: u8) -> [u8; 3] {
     match index {
         0..=15 => [0; 3],
         16..=231 => {
@@ -51,37 +86,54 @@ pub(super) fn entry(index: u8) -> [u8; 3] {
     }
 }
 
-/// The entry from 16 to 255 of the 256-colour palette that is nearest to `colour`; the cube before the greys, the lower
-/// index before the higher where two are equally near.
+/// The entry from 16 to 255 of the 256-colour palette that is nearest to `colour`; the lower of equals.
 #[must_use]
 pub fn nearest_256(colour: [u8; 3]) -> u8 {
-    // The nearest level of each axis; halfway the lower one.
-    let level = |x: u8| {
-        LEVELS
-            .windows(2)
-            .filter(|pair| u16::from(x) * 2 > u16::from(pair[0]) + u16::from(pair[1]))
-            .count() as u8
-    };
-    let [r, g, b] = colour.map(level);
-    let cube = 16 + 36 * r + 6 * g + b;
-    // Among greys the distance is least at the weighted mean, and grows to both sides of it.
-    let sum: i32 = (0..3).map(|i| WEIGHTS[i] * i32::from(colour[i])).sum();
-    let mean = f64::from(sum) / f64::from(WEIGHTS.iter().sum::<i32>());
-    let step = ((mean - 8.0) / 10.0).round().clamp(0.0, 23.0) as u8;
-    let grey = 232 + step;
-    if distance(entry(grey), colour) < distance(entry(cube), colour) {
-        grey
-    } else {
-        cube
-    }
+    static PALETTE: LazyLock<Vec<Vec3>> =
+        LazyLock::new(|| (16..=255).map(|i| perceived(entry(i))).collect());
+    16 + nearest(&PALETTE, colour) as u8
 }
 
 /// The one of the sixteen named colours, 0–15, that is nearest to `colour` as xterm shows them; the lower of equals.
 #[must_use]
 pub fn nearest_16(colour: [u8; 3]) -> u8 {
-    (0..16u8)
-        .min_by_key(|&i| distance(NAMED[usize::from(i)], colour))
-        .unwrap_or_default()
+    static PALETTE: LazyLock<[Vec3; 16]> = LazyLock::new(|| NAMED.map(perceived));
+    nearest(&*PALETTE, colour) as u8
+}
+
+/// The mixture of named colours that comes nearest to `colour`.
+pub(super) fn nearest_shade(colour: [u8; 3]) -> Shade {
+    static SHADED: LazyLock<(Vec<Shade>, Vec<Vec3>)> =
+        LazyLock::new(|| mixtures().into_iter().unzip());
+    let (shades, looks) = &*SHADED;
+    shades[nearest(looks, colour)]
+}
+
+/// All mixtures of two named colours that do not flicker between light and dark, and how they look from afar.
+fn mixtures() -> Vec<(Shade, Vec3)> {
+    let single = |bg: u8| {
+        let shade = Shade {
+            symbol: ' ',
+            fg: bg,
+            bg,
+        };
+        (shade, perceived(NAMED[usize::from(bg)]))
+    };
+    let mut all: Vec<_> = (0..16).map(single).collect();
+    for bg in 0..16_u8 {
+        for fg in bg + 1..16 {
+            let [a, b] = [bg, fg].map(|i| NAMED[usize::from(i)]);
+            // Black and white dots look like dots, not like grey.
+            if perceived(a).distance(perceived(b)) > 0.66 {
+                continue;
+            }
+            for (symbol, share) in SHADES {
+                let light = to_linear(a).lerp(to_linear(b), share);
+                all.push((Shade { symbol, fg, bg }, perceived(to_srgb(light))));
+            }
+        }
+    }
+    all
 }
 
 /// `colour` with 5 bits a channel, black and white unchanged.
@@ -96,16 +148,18 @@ mod tests {
 
     #[test]
     fn the_nearest_of_256_is_the_nearest_of_all() {
-        // Every colour on a grid that holds all levels' surroundings and both ends.
-        let axis: Vec<u8> = (0..=255).step_by(5).chain([254]).collect();
+        let axis: Vec<u8> = (0..=255).step_by(15).collect();
         for &r in &axis {
             for &g in &axis {
                 for &b in &axis {
                     let colour = [r, g, b];
-                    let least = (16..=255).map(|i| distance(entry(i), colour)).min();
+                    let distance = |i: u8| perceived(entry(i)).distance_squared(perceived(colour));
                     let found = nearest_256(colour);
                     assert!(found >= 16);
-                    assert_eq!(Some(distance(entry(found), colour)), least, "{colour:?}");
+                    assert!(
+                        (16..=255).all(|i| distance(found) <= distance(i)),
+                        "{colour:?}"
+                    );
                 }
             }
         }
@@ -118,7 +172,24 @@ mod tests {
         }
         for index in 0..16 {
             assert_eq!(nearest_16(NAMED[usize::from(index)]), index);
+            let shade = nearest_shade(NAMED[usize::from(index)]);
+            assert_eq!((shade.symbol, shade.bg), (' ', index));
         }
+    }
+
+    #[test]
+    fn a_grey_surface_that_darkens_stays_grey() {
+        for x in 0..=255 {
+            let [r, g, b] = entry(nearest_256([x; 3]));
+            assert!(r == g && g == b, "{x}");
+        }
+    }
+
+    #[test]
+    fn shades_lie_between_their_colours() {
+        let dim = nearest_shade([64, 64, 64]);
+        assert_eq!((dim.bg, dim.fg), (0, 8));
+        assert!(['░', '▒'].contains(&dim.symbol), "{dim:?}");
     }
 
     #[test]

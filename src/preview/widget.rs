@@ -83,7 +83,7 @@ mod tests {
 
     #[test]
     fn without_colour_characters_stand_for_brightness() {
-        let expected = Buffer::with_lines(["····", "·#+·", "····"]);
+        let expected = Buffer::with_lines(["····", "·#=·", "····"]);
         assert_eq!(
             drawn(&cells(ColorMode::None), Rect::new(0, 0, 4, 3)),
             expected

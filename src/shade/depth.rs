@@ -22,7 +22,7 @@ pub(super) const CHANNEL: Channel = Channel {
                 hits.iter().map(depth).collect()
             }),
             ramp: Ramp {
-                title: "distance from the eye",
+                title: "distance",
                 map: GREY,
                 reversed: true,
                 counts: false,

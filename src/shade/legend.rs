@@ -16,8 +16,8 @@ pub enum Scale {
 impl fmt::Display for Scale {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Linear => "linear",
-            Self::Log => "logarithmic",
+            Self::Linear => "linear scale",
+            Self::Log => "log scale",
         })
     }
 }
@@ -126,7 +126,7 @@ impl Legend {
     }
 }
 
-/// As written beside a picture: `cells visited by each ray: 0 … median 12 … 57, linear`.
+/// As written beside a picture: `cells per ray: 1 … median 12 … 57, linear scale`.
 impl fmt::Display for Legend {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [min, median, max] = self.labels();
@@ -169,7 +169,7 @@ mod tests {
         );
         assert_eq!(legend.scale, Scale::Linear);
         assert_eq!(legend.position(2.5), 0.25);
-        assert_eq!(legend.to_string(), "tests: 0 … median 5 … 10, linear");
+        assert_eq!(legend.to_string(), "tests: 0 … median 5 … 10, linear scale");
     }
 
     #[test]

@@ -133,6 +133,11 @@ impl Params {
         Ok(())
     }
 
+    /// Adds a value under a key that no row states, e.g. where the parameters of two rows come together.
+    pub fn insert(&mut self, name: &str, value: Value) {
+        self.0.insert(name.to_owned(), value);
+    }
+
     /// The word that `name` has; empty when it has none.
     #[must_use]
     pub fn text(&self, name: &str) -> &str {

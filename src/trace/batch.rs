@@ -1,4 +1,4 @@
-//! Batches: a ray set is cut into slices of [`BATCH`] rays, which the threads of the current rayon pool take in turn.
+//! Batches: a ray set is cut into slices of at most [`BATCH`] rays, which the threads of the current rayon pool take in turn.
 //!
 //! Answers land at their ray's index, so they do not depend on the number of threads.
 
@@ -63,10 +63,16 @@ fn each<T: Send>(rays: &[Ray], answers: &mut [T], trace: impl Fn(&[Ray], &mut [T
             trace(rays, answers);
         }
     } else {
-        rays.par_chunks(BATCH)
-            .zip(answers.par_chunks_mut(BATCH))
+        let batch = batch(rays.len(), rayon::current_num_threads());
+        rays.par_chunks(batch)
+            .zip(answers.par_chunks_mut(batch))
             .for_each(|(rays, answers)| trace(rays, answers));
     }
+}
+
+/// Rays of a batch: fewer where there would not be four batches a thread, but whole packets of 16.
+fn batch(rays: usize, threads: usize) -> usize {
+    BATCH.min(rays.div_ceil(4 * threads).next_multiple_of(16)).max(16)
 }
 
 /// Calls `trace` for each batch and gives the work of each ray.
@@ -76,9 +82,10 @@ fn counted<T: Send>(
     trace: impl Fn(&[Ray], &mut [T], &mut [Counts]) + Sync,
 ) -> Vec<Counts> {
     let mut counts = vec![Counts::default(); rays.len()];
-    rays.par_chunks(BATCH)
-        .zip(answers.par_chunks_mut(BATCH))
-        .zip(counts.par_chunks_mut(BATCH))
+    let batch = batch(rays.len(), rayon::current_num_threads());
+    rays.par_chunks(batch)
+        .zip(answers.par_chunks_mut(batch))
+        .zip(counts.par_chunks_mut(batch))
         .for_each(|((rays, answers), counts)| trace(rays, answers, counts));
     counts
 }
@@ -115,6 +122,14 @@ mod tests {
                 .all(|(hit, blocked)| hit.is_hit() == *blocked)
         );
         assert!(one.0.iter().any(Hit::is_hit) && one.0.iter().any(|h| !h.is_hit()));
+    }
+
+    #[test]
+    fn few_rays_are_shared_among_all_threads() {
+        assert_eq!(batch(100_000, 2), BATCH);
+        assert_eq!(batch(200, 2), 32);
+        assert_eq!(batch(200, 64), 16);
+        assert_eq!(batch(0, 4), 16);
     }
 
     #[test]

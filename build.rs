@@ -9,7 +9,8 @@ fn main() {
     let release = env::var("PROFILE").is_ok_and(|profile| profile == "release");
     // Only in release builds: elsewhere each commit would compile everything again.
     let (commit, dirty) = if release { state() } else { <_>::default() };
-    let rustc = env::var("RUSTC").map_or_else(|_| String::new(), |rustc| said(&rustc, &["--version"]));
+    let rustc =
+        env::var("RUSTC").map_or_else(|_| String::new(), |rustc| said(&rustc, &["--version"]));
     for (name, value) in [
         ("RAYLAB_COMMIT", commit),
         ("RAYLAB_DIRTY", dirty),

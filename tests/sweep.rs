@@ -204,8 +204,8 @@ fn a_finished_plan_has_nothing_left_to_do() {
     let plan = plan();
     let finished = plan.runs().iter().map(raylab::lab::RunConfig::id).collect();
     let mut events = Vec::new();
-    sweep(&plan, &finished, &Control::default(), &mut |e| {
-        events.push(e)
+    sweep(&plan, &finished, &Control::default(), &mut |event| {
+        events.push(event);
     })
     .unwrap();
     assert_eq!(events.len(), 2);

@@ -82,10 +82,15 @@ impl Bundle {
         let mut done = Done::default();
         // The journal is written first and holds at least what the report does.
         report.runs.extend(finished);
-        report.runs.retain(|run| done.finished.insert(run.id.clone()));
+        report
+            .runs
+            .retain(|run| done.finished.insert(run.id.clone()));
         let mut by_run: BTreeMap<String, Vec<f64>> = BTreeMap::new();
         for sample in taken {
-            by_run.entry(sample.id).or_default().push(sample.mrays_per_s);
+            by_run
+                .entry(sample.id)
+                .or_default()
+                .push(sample.mrays_per_s);
         }
         by_run.retain(|id, _| !done.finished.contains(id));
         done.samples = by_run;
@@ -164,7 +169,8 @@ impl Bundle {
     #[must_use]
     pub fn is_complete(&self) -> bool {
         let runs = self.report.config.runs();
-        runs.iter().all(|run| self.done.finished.contains(&run.id()))
+        runs.iter()
+            .all(|run| self.done.finished.contains(&run.id()))
     }
 
     /// The folder.
@@ -231,17 +237,20 @@ impl Journal {
             }
             text => text.unwrap_or_default(),
         };
-        let whole = text.iter().rposition(|b| *b == b'\n').map_or(0, |at| at + 1);
+        let whole = text
+            .iter()
+            .rposition(|b| *b == b'\n')
+            .map_or(0, |at| at + 1);
         let mut entries = Vec::new();
         let lines = text[..whole].split(|b| *b == b'\n').zip(1..);
         for (bytes, line) in lines.filter(|(bytes, _)| !bytes.is_empty()) {
-            entries.push(serde_json::from_slice(bytes).map_err(|why| {
-                ReportError::Journal {
+            entries.push(
+                serde_json::from_slice(bytes).map_err(|why| ReportError::Journal {
                     path: path.clone(),
                     line,
                     why: why.to_string(),
-                }
-            })?);
+                })?,
+            );
         }
         Ok((entries, Self::open(path, whole as u64)?))
     }
@@ -334,7 +343,10 @@ mod tests {
         assert_eq!(bundle.plan(), &plan);
         assert_eq!(bundle.report().runs, [Run::from(&one)]);
         assert!(bundle.done().finished.contains(&one.id));
-        assert_eq!(bundle.done().samples, BTreeMap::from([(two.id.clone(), vec![0.2, 0.3])]));
+        assert_eq!(
+            bundle.done().samples,
+            BTreeMap::from([(two.id.clone(), vec![0.2, 0.3])])
+        );
         bundle.note(&finished(two.clone())).unwrap();
         bundle.note(&finished(two.clone())).unwrap();
         bundle.finish().unwrap();

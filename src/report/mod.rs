@@ -1,6 +1,8 @@
 //! Reports: the schema, the journal, exports and plots.
 
+mod bundle;
 mod csv;
+mod error;
 mod export;
 #[cfg(test)]
 pub(crate) mod fixture;
@@ -8,8 +10,14 @@ mod html;
 mod markdown;
 mod model;
 pub mod plot;
+mod provenance;
+mod read;
+mod run;
 pub mod series;
 mod table;
 
+pub use bundle::Bundle;
+pub use error::ReportError;
 pub use export::{ExportError, FORMATS, FormatEntry, export};
 pub use model::{Accuracy, AccuracyBounds, Provenance, Report, Run, SceneFacts, UlpSpread};
+pub use read::{SCHEMA_JSON, replace};

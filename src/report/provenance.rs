@@ -21,7 +21,7 @@ impl Provenance {
         let scenes = plan.scenes.iter().map(|spec| scene_facts(spec));
         Ok(Self {
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            commit: env!("RAYLAB_COMMIT").to_owned(),
+            commit: String::from(env!("RAYLAB_COMMIT")),
             dirty: !env!("RAYLAB_DIRTY").is_empty(),
             rustc: env!("RAYLAB_RUSTC").to_owned(),
             target: env!("RAYLAB_TARGET").to_owned(),
@@ -44,7 +44,15 @@ impl Provenance {
     #[must_use]
     pub fn same_machine(&self, other: &Self) -> bool {
         let parts = |p: &Self| {
-            [&p.version, &p.rustc, &p.target, &p.profile, &p.cpu, &p.instruction_set].map(Clone::clone)
+            [
+                &p.version,
+                &p.rustc,
+                &p.target,
+                &p.profile,
+                &p.cpu,
+                &p.instruction_set,
+            ]
+            .map(Clone::clone)
         };
         parts(self) == parts(other) && self.cores == other.cores
     }
@@ -63,7 +71,9 @@ fn scene_facts(spec: &str) -> Result<SceneFacts, SceneError> {
 fn cpu_model() -> String {
     let wanted = RefreshKind::nothing().with_cpu(CpuRefreshKind::nothing());
     let system = System::new_with_specifics(wanted);
-    let brand = system.ok().and_then(|s| Some(s.cpus().first()?.brand().trim().to_owned()));
+    let brand = system
+        .ok()
+        .and_then(|s| Some(s.cpus().first()?.brand().trim().to_owned()));
     brand.unwrap_or_default()
 }
 
@@ -75,10 +85,13 @@ fn caches(dir: &Path) -> Vec<u64> {
             let text = std::fs::read_to_string(dir.join(format!("index{index}/{name}"))).ok()?;
             Some(text.trim().to_owned())
         };
-        let (Some(level), Some(kind), Some(size)) = (read("level"), read("type"), read("size")) else {
+        let (Some(level), Some(kind), Some(size)) = (read("level"), read("type"), read("size"))
+        else {
             continue;
         };
-        if kind != "Instruction" && let (Ok(level), Some(bytes)) = (level.parse::<u32>(), bytes(&size)) {
+        if kind != "Instruction"
+            && let (Ok(level), Some(bytes)) = (level.parse::<u32>(), bytes(&size))
+        {
             caches.push((level, bytes));
         }
     }
@@ -170,7 +183,10 @@ mod tests {
         let gathered = Provenance::gather(&plan, vec!["raylab".to_owned()]).unwrap();
         assert_eq!(gathered.version, env!("CARGO_PKG_VERSION"));
         assert!(gathered.rustc.starts_with("rustc ") && gathered.cores > 0);
-        assert_eq!((gathered.scenes.len(), gathered.scenes[0].triangles), (1, 1));
+        assert_eq!(
+            (gathered.scenes.len(), gathered.scenes[0].triangles),
+            (1, 1)
+        );
         assert_eq!(gathered.scenes[0].hash.len(), 64);
         assert!(gathered.same_machine(&gathered.clone()));
         let unknown = Plan {

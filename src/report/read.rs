@@ -52,7 +52,9 @@ impl Report {
             Some(Value::String(schema)) if schema == Self::SCHEMA => {}
             Some(schema) => {
                 let expected = Self::SCHEMA;
-                return Err(foreign(format!("its schema is {schema}, not \"{expected}\"")));
+                return Err(foreign(format!(
+                    "its schema is {schema}, not \"{expected}\""
+                )));
             }
             None => return Err(foreign("it names no schema".to_owned())),
         }
@@ -136,7 +138,9 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let told = Report::read(dir.path()).unwrap_err().to_string();
         assert!(told.contains("holds no bundle"), "{told}");
-        let told = Report::read(Path::new("no/report.json")).unwrap_err().to_string();
+        let told = Report::read(Path::new("no/report.json"))
+            .unwrap_err()
+            .to_string();
         assert!(told.starts_with("cannot read no/report.json"), "{told}");
     }
 }

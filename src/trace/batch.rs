@@ -72,7 +72,9 @@ fn each<T: Send>(rays: &[Ray], answers: &mut [T], trace: impl Fn(&[Ray], &mut [T
 
 /// Rays of a batch: fewer where there would not be four batches a thread, but whole packets of 16.
 fn batch(rays: usize, threads: usize) -> usize {
-    BATCH.min(rays.div_ceil(4 * threads).next_multiple_of(16)).max(16)
+    BATCH
+        .min(rays.div_ceil(4 * threads).next_multiple_of(16))
+        .max(16)
 }
 
 /// Calls `trace` for each batch and gives the work of each ray.

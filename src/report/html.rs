@@ -1,8 +1,8 @@
 //! One self-contained page: figures, tables, provenance, warnings. It opens without a network and follows the reader's
 //! preference for light or dark.
 
-use super::plot::text::escape;
-use super::plot::{self, Kind};
+use super::plot::text::{css, escape};
+use super::plot::{self, Kind, Subject};
 use super::series::panels;
 use super::table::{self, Table, WORDS};
 use super::{ExportError, Report};
@@ -35,7 +35,8 @@ pub(super) fn page(report: &Report) -> Result<String, ExportError> {
     let mut html = vec![format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>{title}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n"
+         <title>{title}</title>\n<style>{}{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n",
+        css()
     )];
     html.push(warnings(report));
     if keys.len() > 1 {
@@ -46,6 +47,7 @@ pub(super) fn page(report: &Report) -> Result<String, ExportError> {
         }
         html.push("</ul></nav>\n".to_owned());
     }
+    html.extend(plot::svg(report, &Subject::Overview)?);
     if keys.is_empty() {
         html.push("<p>No runs.</p>\n".to_owned());
     }
@@ -55,7 +57,8 @@ pub(super) fn page(report: &Report) -> Result<String, ExportError> {
             escape(&key.to_string())
         ));
         for kind in Kind::ALL {
-            html.extend(plot::svg(report, key, kind)?);
+            let subject = Subject::One(key.clone(), kind);
+            html.extend(plot::svg(report, &subject)?);
         }
         let runs = table::runs(report, key);
         html.push("<h3>The fastest run of each accelerator</h3>\n".to_owned());
@@ -138,7 +141,9 @@ mod tests {
     fn the_page_holds_every_figure_and_loads_nothing() {
         let page = page(&teapot()).unwrap();
         assert_eq!(page.matches("<svg ").count(), Kind::ALL.len());
-        let outside = page.replace("http://www.w3.org/2000/svg", "");
+        let outside = page
+            .replace("http://www.w3.org/2000/svg", "")
+            .replace("src:url(data:font/otf;base64,", "");
         for word in [
             "http:", "https:", "src=", "@import", "url(", "<script", "<link",
         ] {

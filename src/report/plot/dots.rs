@@ -5,7 +5,7 @@ use crate::report::series::Quantity;
 use super::axis::{Axis, Base, measured};
 use super::canvas::{Anchor, Canvas};
 use super::figure::{Curve, MARGIN, Panel, Plot, WIDTH, label_face, panel_head, quiet_face};
-use super::plane::Plane;
+use super::plane::{Plane, Rows};
 use super::theme::Theme;
 
 /// From one row to the next.
@@ -82,7 +82,7 @@ impl Plot for Dots {
                 (self.left, y),
                 (right, y + rows(panel)),
             );
-            plane.draw(canvas, theme, false);
+            plane.draw(canvas, theme, Rows::Hidden);
             for (row, curve) in panel.curves.iter().enumerate() {
                 let y = y + (row as f64 + 0.5) * PITCH;
                 draw_row(canvas, theme, &plane, curve, y);

@@ -18,13 +18,13 @@
 use std::collections::BTreeSet;
 
 use crate::report::series::{PanelKey, Quantity, Series, accel_label, series};
-use crate::report::{Provenance, Report, Run};
+use crate::report::{Report, Run};
 
 use super::axis::number;
 use super::canvas::{Anchor, Canvas, Face, Head, finish};
 use super::font::{self, Weight};
 use super::theme::{Look, Theme};
-use super::{dots, lines};
+use super::{dots, lines, note};
 
 /// What a figure is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -68,10 +68,7 @@ pub(super) const WIDTH: f64 = 720.0;
 pub(super) const MARGIN: f64 = 16.0;
 /// Widest name of a curve.
 const WIDEST_NAME: f64 = 280.0;
-const TITLE: f64 = 15.0;
-const SMALL: f64 = 9.5;
-/// From one line of small print to the next.
-const SMALL_PITCH: f64 = 12.5;
+pub(super) const TITLE: f64 = 15.0;
 
 /// A curve and how it looks.
 #[derive(Debug, Clone)]
@@ -187,27 +184,26 @@ pub(super) fn svg(
         Box::new(dots::plan(panels, theme))
     };
     let width = plan.width();
-    let note = font::wrap(
-        &note(&runs, &report.provenance, kind, plan.as_ref()),
-        SMALL,
+    let lines = font::wrap(
+        &note::note(
+            &runs,
+            &report.provenance,
+            kind,
+            plan.interval(),
+            &plan.legend(),
+        ),
+        note::SMALL,
         width - 2.0 * MARGIN,
     );
     let top = 58.0;
     let foot = top + plan.height() + 12.0;
-    let height = (foot + note.len() as f64 * SMALL_PITCH + 6.0).ceil();
+    let height = (foot + lines.len() as f64 * note::PITCH + 6.0).ceil();
 
     let mut drawn = String::new();
     let mut canvas = Canvas::new(&mut drawn, width, height, theme.ground);
     title(&mut canvas, theme, key, &runs, width);
     plan.draw(&mut canvas, theme, top);
-    for (i, line) in note.iter().enumerate() {
-        let face = Face {
-            size: SMALL,
-            ..quiet_face(theme)
-        };
-        let y = foot + (i as f64 + 0.8) * SMALL_PITCH;
-        canvas.text(line, (MARGIN, y), Anchor::Start, face);
-    }
+    note::draw(&mut canvas, theme, &lines, foot);
     let widths = canvas.end()?;
     let head = Head {
         width,
@@ -233,7 +229,7 @@ pub(super) trait Plot {
 }
 
 /// The panels of a figure that have values. A curve looks the same in every figure of a report.
-fn panels(report: &Report, key: &PanelKey, kind: Kind) -> Vec<Panel> {
+pub(super) fn panels(report: &Report, key: &PanelKey, kind: Kind) -> Vec<Panel> {
     let mut known: Vec<String> = Vec::new();
     for label in report.runs.iter().map(accel_label) {
         if !known.contains(&label) {
@@ -282,7 +278,7 @@ fn title(canvas: &mut Canvas, theme: &Theme, key: &PanelKey, runs: &[&Run], widt
         colour: theme.ink,
     };
     let room = width - 2.0 * MARGIN;
-    let line = font::fit(&heading(key), face.size, face.weight, room);
+    let line = font::fit(&words(key).join(" · "), face.size, face.weight, room);
     canvas.text(&line, (MARGIN, 26.0), Anchor::Start, face);
     if let Some(run) = runs.first() {
         let facts = format!(
@@ -299,20 +295,24 @@ fn title(canvas: &mut Canvas, theme: &Theme, key: &PanelKey, runs: &[&Run], widt
     }
 }
 
-/// The panel in words, of paths only the file's name: the whole path is in the tables.
-fn heading(key: &PanelKey) -> String {
-    let file = |path: &str| path.rsplit(['/', '\\']).next().unwrap_or(path).to_owned();
+/// Of a path, the name of its file: the whole path is in the tables.
+pub(super) fn file_name(spec: &str) -> &str {
+    spec.rsplit(['/', '\\']).next().unwrap_or(spec)
+}
+
+/// Scene, rays, kernel and threads as words.
+pub(super) fn words(key: &PanelKey) -> [String; 4] {
     let rays = match key.rays.strip_prefix("file:") {
-        Some(path) => format!("rays of {}", file(path)),
+        Some(path) => format!("rays of {}", file_name(path)),
         None => format!("{} rays", key.rays),
     };
     let plural = if key.threads == 1 { "" } else { "s" };
-    format!(
-        "{} · {} · {rays} · {} thread{plural}",
-        file(&key.scene),
-        key.kernel,
-        key.threads
-    )
+    [
+        file_name(&key.scene).to_owned(),
+        rays,
+        key.kernel.clone(),
+        format!("{} thread{plural}", key.threads),
+    ]
 }
 
 const fn label_face_quiet(theme: &Theme) -> Face {
@@ -320,69 +320,4 @@ const fn label_face_quiet(theme: &Theme) -> Face {
         colour: theme.muted,
         ..label_face(theme)
     }
-}
-
-/// How it was measured, what the signs mean, and on what machine.
-fn note(runs: &[&Run], provenance: &Provenance, kind: Kind, plot: &dyn Plot) -> String {
-    let mut parts: Vec<String> = vec![match kind {
-        Kind::Speed => format!(
-            "Median of {} a point; {}: 95 % bootstrap interval of the median.",
-            samples(runs.iter().map(|r| r.mrays_per_s.samples.len())),
-            plot.interval()
-        ),
-        Kind::Work => {
-            "Means over the rays of the set, counted in a separate pass: exact, no interval.".into()
-        }
-        Kind::Cost => format!(
-            "Build time: median of {}; {}: 95 % bootstrap interval. Memory: structure and packed triangles.",
-            samples(runs.iter().map(|r| r.build_ms.samples.len())),
-            plot.interval()
-        ),
-    }];
-    parts.extend(plot.legend().into_iter().map(str::to_owned));
-    let wrong = runs.iter().filter(|run| !run.valid).count();
-    if wrong > 0 {
-        parts.push(format!(
-            "Attention: {wrong} of {} runs gave answers that are not valid.",
-            runs.len()
-        ));
-    }
-    parts.push(machine(provenance));
-    parts.join(" ")
-}
-
-/// `9 samples`, `9 to 12 samples`.
-fn samples(counts: impl Iterator<Item = usize>) -> String {
-    let counts: BTreeSet<usize> = counts.filter(|c| *c > 0).collect();
-    match (counts.first(), counts.last()) {
-        (Some(1), Some(1)) => "1 sample".to_owned(),
-        (Some(least), Some(most)) if least == most => format!("{least} samples"),
-        (Some(least), Some(most)) => format!("{least} to {most} samples"),
-        _ => "the samples".to_owned(),
-    }
-}
-
-/// Machine, program and day, as far as they are known.
-fn machine(p: &Provenance) -> String {
-    let commit: String = p.commit.chars().take(7).collect();
-    let program = match (commit.as_str(), p.dirty) {
-        _ if p.version.is_empty() => "raylab".to_owned(),
-        ("", _) => format!("raylab {}", p.version),
-        (commit, false) => format!("raylab {} ({commit})", p.version),
-        (commit, true) => format!("raylab {} ({commit}, modified)", p.version),
-    };
-    let day: String = p.date.chars().take(10).collect();
-    [
-        p.cpu.clone(),
-        p.instruction_set.clone(),
-        p.os.clone(),
-        program,
-        day,
-    ]
-    .into_iter()
-    .map(|part| part.trim().to_owned())
-    .filter(|part| !part.is_empty())
-    .collect::<Vec<_>>()
-    .join(", ")
-        + "."
 }

@@ -4,6 +4,8 @@
 use std::sync::{Arc, LazyLock};
 
 use ab_glyph::{Font, FontRef};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use plotters::style::{FontStyle, register_font};
 use resvg::usvg::fontdb::Database;
 
@@ -48,6 +50,19 @@ pub(super) fn database() -> Arc<Database> {
         Arc::new(database)
     });
     Arc::clone(&DATABASE)
+}
+
+/// Rules that bring the typeface into a page.
+pub(in crate::report) fn css() -> String {
+    [(REGULAR, 400), (BOLD, 600)]
+        .map(|(face, weight)| {
+            let data = STANDARD.encode(face);
+            format!(
+                "@font-face{{font-family:Inter;font-weight:{weight};\
+                 src:url(data:font/otf;base64,{data}) format('opentype')}}"
+            )
+        })
+        .concat()
 }
 
 /// Width of `text` at `size` pixels an em.

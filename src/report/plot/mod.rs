@@ -9,6 +9,7 @@
 //! | `speed` | rays/s with its interval, the fastest n, the predicted best n and its ties |
 //! | `work` | steps and tests of a ray, measured and predicted |
 //! | `cost` | build time and memory |
+//! | `overview` | the speeds of all combinations as small multiples, where there is more than one |
 //!
 //! Equal reports give equal bytes: nothing here knows the time, the machine or its fonts.
 
@@ -21,11 +22,14 @@ use super::series::{PanelKey, panels};
 
 mod axis;
 mod canvas;
+mod curves;
 mod dots;
 mod figure;
 mod font;
 mod labels;
 mod lines;
+mod note;
+mod overview;
 mod plane;
 mod raster;
 mod theme;
@@ -36,6 +40,7 @@ pub use figure::Kind;
 pub(super) mod text {
     pub(in crate::report) use super::axis::{measured, number};
     pub(in crate::report) use super::canvas::escape;
+    pub(in crate::report) use super::font::css;
 }
 
 use figure::Style;
@@ -60,6 +65,15 @@ impl PlotFormat {
             Self::PngDark => "-dark.png",
         }
     }
+
+    const fn style(self) -> Style<'static> {
+        let (theme, adapts) = match self {
+            Self::Svg => (&theme::LIGHT, true),
+            Self::Png => (&theme::LIGHT, false),
+            Self::PngDark => (&theme::DARK, false),
+        };
+        Style { theme, adapts }
+    }
 }
 
 /// Writes all figures of `report` into `dir`, which is made where it is missing; returns the files in the order of the
@@ -74,19 +88,13 @@ pub fn write_all(
 ) -> Result<Vec<PathBuf>, ExportError> {
     make(dir)?;
     let mut files = Vec::new();
-    for (name, key, kind) in figures(report) {
+    for (name, subject) in figures(report) {
         for &format in formats {
             let draw = |why| ExportError::Draw {
                 figure: name.clone(),
                 why,
             };
-            let (theme, adapts) = match format {
-                PlotFormat::Svg => (&theme::LIGHT, true),
-                PlotFormat::Png => (&theme::LIGHT, false),
-                PlotFormat::PngDark => (&theme::DARK, false),
-            };
-            let style = Style { theme, adapts };
-            let Some(svg) = figure::svg(report, &key, kind, style).map_err(draw)? else {
+            let Some(svg) = drawn(report, &subject, format.style()).map_err(draw)? else {
                 continue;
             };
             let content = match format {
@@ -99,25 +107,38 @@ pub fn write_all(
     Ok(files)
 }
 
-/// One figure of `report` as SVG that follows the reader's preference for light or dark; `None` without values.
+/// What a figure shows.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Subject {
+    /// The speeds of all combinations as small multiples.
+    Overview,
+    /// One combination.
+    One(PanelKey, Kind),
+}
+
+/// One figure of `report` as SVG that follows the reader's preference for light or dark; `None` where the report has no
+/// values for it, or too few combinations for an overview.
 ///
 /// # Errors
 /// A figure that cannot be drawn.
-pub fn svg(report: &Report, key: &PanelKey, kind: Kind) -> Result<Option<String>, ExportError> {
-    let style = Style {
-        theme: &theme::LIGHT,
-        adapts: true,
-    };
-    figure::svg(report, key, kind, style).map_err(|why| ExportError::Draw {
-        figure: format!("{key}: {}", kind.name()),
+pub fn svg(report: &Report, subject: &Subject) -> Result<Option<String>, ExportError> {
+    drawn(report, subject, PlotFormat::Svg.style()).map_err(|why| ExportError::Draw {
+        figure: format!("{subject:?}"),
         why,
     })
 }
 
+fn drawn(report: &Report, subject: &Subject, style: Style) -> Result<Option<String>, String> {
+    match subject {
+        Subject::Overview => overview::svg(report, style),
+        Subject::One(key, kind) => figure::svg(report, key, *kind, style),
+    }
+}
+
 /// All figures of `report` with the names of their files, without ending: `speed-teapot-woop-primary-1t`.
-fn figures(report: &Report) -> Vec<(String, PanelKey, Kind)> {
+fn figures(report: &Report) -> Vec<(String, Subject)> {
     let mut used: BTreeMap<String, usize> = BTreeMap::new();
-    let mut figures = Vec::new();
+    let mut figures = vec![("overview".to_owned(), Subject::Overview)];
     for key in panels(&report.runs) {
         let mut stem = file_stem(&key);
         // Scenes that differ only in characters a file name cannot have are numbered in the order of the report.
@@ -127,7 +148,8 @@ fn figures(report: &Report) -> Vec<(String, PanelKey, Kind)> {
             stem = format!("{stem}-{count}");
         }
         for kind in Kind::ALL {
-            figures.push((format!("{}-{stem}", kind.name()), key.clone(), kind));
+            let subject = Subject::One(key.clone(), kind);
+            figures.push((format!("{}-{stem}", kind.name()), subject));
         }
     }
     figures

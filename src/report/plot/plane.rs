@@ -4,13 +4,30 @@ use plotters::coord::CoordTranslate;
 use plotters::coord::cartesian::Cartesian2d;
 use plotters::coord::combinators::{IntoLogRange, LogCoord};
 
-use super::axis::Axis;
+use super::axis::{Axis, Tick};
 use super::canvas::{Anchor, At, Canvas};
 use super::figure::quiet_face;
 use super::theme::Theme;
 
 /// plotters maps to whole numbers; this many of them are a pixel.
 const FINE: f64 = 16.0;
+
+/// What is shown of the y axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Rows {
+    /// Grid and numbers.
+    Labelled,
+    /// The grid: the numbers stand at a neighbour.
+    Ruled,
+    /// Nothing: y has no meaning.
+    Hidden,
+}
+
+/// Width of the widest number at a y axis.
+pub(super) fn widest_tick(y: &Axis, theme: &Theme) -> f64 {
+    let width = |t: &Tick| quiet_face(theme).width(&t.label);
+    y.ticks.iter().map(width).fold(0.0, f64::max)
+}
 
 /// Two logarithmic axes over a rectangle of the sheet.
 pub(super) struct Plane {
@@ -48,8 +65,8 @@ impl Plane {
         (f64::from(x) / FINE, f64::from(y) / FINE)
     }
 
-    /// Grid, ticks and their labels. `rows` also rules the values of y.
-    pub fn draw(&self, canvas: &mut Canvas, theme: &Theme, rows: bool) {
+    /// Grid, ticks and their labels.
+    pub fn draw(&self, canvas: &mut Canvas, theme: &Theme, rows: Rows) {
         let face = quiet_face(theme);
         for tick in &self.x.ticks {
             let x = self.at(tick.value, self.y.hi).0;
@@ -72,8 +89,8 @@ impl Plane {
                 &[],
             );
         }
-        if rows {
-            self.draw_rows(canvas, theme);
+        if rows != Rows::Hidden {
+            self.draw_rows(canvas, theme, rows == Rows::Labelled);
         }
         let base = [(self.left, self.bottom), (self.right, self.bottom)];
         canvas.line(&base, theme.axis, 0.9, &[]);
@@ -92,14 +109,16 @@ impl Plane {
         }
     }
 
-    fn draw_rows(&self, canvas: &mut Canvas, theme: &Theme) {
+    fn draw_rows(&self, canvas: &mut Canvas, theme: &Theme, labelled: bool) {
         let face = quiet_face(theme);
         for tick in &self.y.ticks {
             let y = self.at(self.x.lo, tick.value).1;
             canvas.line(&[(self.left, y), (self.right, y)], theme.grid, 0.75, &[]);
             // Digits are about 0.72 em tall: a third of an em below the line centres them on it.
             let at = (self.left - 7.0, y + 0.36 * face.size);
-            canvas.text(&tick.label, at, Anchor::End, face);
+            if labelled {
+                canvas.text(&tick.label, at, Anchor::End, face);
+            }
         }
         for &value in &self.y.minor {
             let y = self.at(self.x.lo, value).1;

@@ -11,13 +11,27 @@ use crate::report::series::{accel_label, series};
 
 mod cases;
 
-/// All figures of all cases: case, kind, SVG.
-fn drawn() -> Vec<(String, Report, PanelKey, Kind, String)> {
+/// A figure of a case.
+struct Drawn {
+    name: String,
+    report: Report,
+    subject: Subject,
+    svg: String,
+}
+
+/// All figures of all cases.
+fn drawn() -> Vec<Drawn> {
     let mut all = Vec::new();
     for (case, report) in cases::all() {
-        for (name, key, kind) in figures(&report) {
-            if let Some(svg) = svg(&report, &key, kind).unwrap() {
-                all.push((format!("{case}/{name}"), report.clone(), key, kind, svg));
+        for (name, subject) in figures(&report) {
+            if let Some(svg) = svg(&report, &subject).unwrap() {
+                let (name, report) = (format!("{case}/{name}"), report.clone());
+                all.push(Drawn {
+                    name,
+                    report,
+                    subject,
+                    svg,
+                });
             }
         }
     }
@@ -68,7 +82,10 @@ fn boxes(tree: &Tree) -> Vec<Rect> {
 
 #[test]
 fn everything_lies_within_the_sheet() {
-    for (figure, .., svg) in drawn() {
+    for Drawn {
+        name: figure, svg, ..
+    } in drawn()
+    {
         let tree = parsed(&svg);
         let (w, h) = (tree.size().width(), tree.size().height());
         for (text, b) in texts(&tree) {
@@ -88,7 +105,10 @@ fn everything_lies_within_the_sheet() {
 
 #[test]
 fn no_two_texts_overlap() {
-    for (figure, .., svg) in drawn() {
+    for Drawn {
+        name: figure, svg, ..
+    } in drawn()
+    {
         let texts = texts(&parsed(&svg));
         for (i, (a, ra)) in texts.iter().enumerate() {
             for (b, rb) in &texts[i + 1..] {
@@ -104,17 +124,21 @@ fn no_two_texts_overlap() {
 
 #[test]
 fn every_line_has_its_label_in_every_panel() {
-    for (figure, report, key, kind, svg) in drawn() {
-        let texts = texts(&parsed(&svg));
+    for figure in drawn() {
+        let Subject::One(key, kind) = figure.subject else {
+            continue;
+        };
+        let texts = texts(&parsed(&figure.svg));
         for &quantity in kind.quantities() {
-            for line in series(&report.runs, &key, quantity) {
+            for line in series(&figure.report.runs, &key, quantity) {
                 // A long label keeps its beginning.
                 let start: String = line.label.chars().take(18).collect();
                 let found = texts.iter().filter(|(t, _)| t.starts_with(&start)).count();
                 let panels = kind.quantities().len();
                 assert!(
                     found >= 1 && found + 1 >= panels,
-                    "{figure}: '{}'",
+                    "{}: '{}'",
+                    figure.name,
                     line.label
                 );
             }
@@ -125,7 +149,7 @@ fn every_line_has_its_label_in_every_panel() {
 #[test]
 fn a_text_is_as_wide_as_it_says() {
     // The stated width makes the layout hold where the typeface is missing; here it is present, so both agree.
-    let (.., svg) = drawn().swap_remove(0);
+    let svg = drawn().swap_remove(0).svg;
     let free = svg
         .lines()
         .map(|line| {
@@ -148,15 +172,18 @@ fn a_text_is_as_wide_as_it_says() {
 
 #[test]
 fn a_figure_holds_no_number_that_is_none() {
-    for (figure, .., svg) in drawn() {
+    for Drawn {
+        name: figure, svg, ..
+    } in drawn()
+    {
         assert!(!svg.contains("NaN") && !svg.contains("inf"), "{figure}");
     }
 }
 
 #[test]
 fn equal_reports_give_equal_bytes() {
-    let once: Vec<String> = drawn().into_iter().map(|d| d.4).collect();
-    let again: Vec<String> = drawn().into_iter().map(|d| d.4).collect();
+    let once: Vec<String> = drawn().into_iter().map(|d| d.svg).collect();
+    let again: Vec<String> = drawn().into_iter().map(|d| d.svg).collect();
     assert_eq!(once, again);
 }
 
@@ -166,7 +193,9 @@ fn curves_of_a_figure_differ_and_keep_their_look_over_figures() {
     let labels: HashSet<String> = report.runs.iter().map(accel_label).collect();
     let key = &panels(&report.runs)[0];
     for kind in Kind::ALL {
-        let svg = svg(&report, key, kind).unwrap().unwrap();
+        let svg = svg(&report, &Subject::One(key.clone(), kind))
+            .unwrap()
+            .unwrap();
         for colour in &theme::LIGHT.lines[..labels.len()] {
             assert!(svg.contains(&theme::hex(*colour)), "{kind:?}");
         }
@@ -245,7 +274,7 @@ fn names_of_files_are_sane_and_distinct_whatever_the_scene() {
     let runs = scenes.map(|s| fixture::run_of(s, 1, "file:/x/y.rays", 2, "bvh", None));
     let report = fixture::report(runs.to_vec());
     let names: Vec<String> = figures(&report).into_iter().map(|f| f.0).collect();
-    assert_eq!(names.len(), scenes.len() * Kind::ALL.len());
+    assert_eq!(names.len(), scenes.len() * Kind::ALL.len() + 1);
     assert_eq!(names.iter().collect::<HashSet<_>>().len(), names.len());
     for name in &names {
         let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-' || c == '.';
@@ -262,4 +291,14 @@ fn a_report_without_runs_has_no_figures() {
     let dir = tempfile::tempdir().unwrap();
     let files = write_all(&fixture::report(Vec::new()), dir.path(), &[PlotFormat::Svg]).unwrap();
     assert!(files.is_empty());
+}
+
+#[test]
+fn several_combinations_get_an_overview_that_names_each() {
+    let (_, report) = cases::all().pop().unwrap();
+    let texts = texts(&parsed(&svg(&report, &Subject::Overview).unwrap().unwrap()));
+    for key in panels(&report.runs) {
+        let named = |(text, _): &&(String, Rect)| text.starts_with(&key.scene);
+        assert!(texts.iter().any(|t| named(&t)), "{key}");
+    }
 }

@@ -30,6 +30,7 @@ pub(super) fn all() -> Vec<(&'static str, Report)> {
         ("missing", missing()),
         ("long-names", long_names()),
         ("short-lines", short_lines()),
+        ("combinations", combinations()),
     ]
 }
 
@@ -183,5 +184,23 @@ fn short_lines() -> Report {
     runs.extend(over_n("grid-2level", &N[..8]));
     runs.extend(over_n("grid-skip", &N[2..3]));
     runs.push(run("bvh", None));
+    report(runs)
+}
+
+/// Two scenes, two ray sets, two thread counts.
+fn combinations() -> Report {
+    let mut runs = Vec::new();
+    for (scene, triangles) in [("teapot", 6_320), ("caballito", 148_000)] {
+        for rays in ["primary", "random"] {
+            for threads in [1, 2] {
+                for n in N {
+                    runs.push(run_of(scene, triangles, rays, threads, "grid", Some(n)));
+                }
+                for accel in ["brute", "kd-tree", "bvh"] {
+                    runs.push(run_of(scene, triangles, rays, threads, accel, None));
+                }
+            }
+        }
+    }
     report(runs)
 }

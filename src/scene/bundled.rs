@@ -72,14 +72,19 @@ fn caballito(_: &Sizes) -> Result<Scene, SceneError> {
         "caballito.obj",
         include_bytes!("../../scenes/caballito/caballito.obj"),
         include_bytes!("../../scenes/caballito/caballito.mtl"),
-        Camera::framing(crate::geometry::Aabb::EMPTY, Vec3::Y),
+        view([24.5, 25.5, -19.0], [0.42, 0.26, 1.0], 112.0),
     )
-    .map(framed)
 }
 
-fn framed(mut scene: Scene) -> Scene {
-    scene.camera = Camera::framing(scene.mesh.bounds(), Vec3::Y);
-    scene
+/// A view of `at` from the given direction and distance.
+fn view(at: [f32; 3], from: [f32; 3], distance: f32) -> Camera {
+    let at = Vec3::from_array(at);
+    Camera {
+        eye: at + Vec3::from_array(from).normalize() * distance,
+        at,
+        up: Vec3::Y,
+        fov_deg: 38.0,
+    }
 }
 
 fn staircase(_: &Sizes) -> Result<Scene, SceneError> {
@@ -87,9 +92,8 @@ fn staircase(_: &Sizes) -> Result<Scene, SceneError> {
         "spiralStaircase.obj",
         include_bytes!("../../scenes/staircase/spiralStaircase.obj"),
         include_bytes!("../../scenes/staircase/spiralStaircase.mtl"),
-        Camera::framing(crate::geometry::Aabb::EMPTY, Vec3::Y),
+        view([6.5, 176.0, -8.0], [0.75, 0.3, 0.9], 600.0),
     )
-    .map(framed)
 }
 
 fn plant(_: &Sizes) -> Result<Scene, SceneError> {
@@ -97,9 +101,8 @@ fn plant(_: &Sizes) -> Result<Scene, SceneError> {
         "decorativePlant.obj",
         include_bytes!("../../scenes/plant/decorativePlant.obj"),
         include_bytes!("../../scenes/plant/decorativePlant.mtl"),
-        Camera::framing(crate::geometry::Aabb::EMPTY, Vec3::Y),
+        view([1.5, 156.0, 0.5], [0.4, 0.32, 1.0], 183.0),
     )
-    .map(framed)
 }
 
 /// The measured room and its camera, with two spheres of radius 90 in place of the blocks.
@@ -139,10 +142,10 @@ fn cornell(_: &Sizes) -> Result<Scene, SceneError> {
         scene.material_of.resize(triangles.len(), material);
     }
     scene.mesh = Arc::new(Mesh::new(vertices, triangles)?);
-    // Radiance (17, 12, 4) times the panel's area, 130 by 105: its intensity straight down.
+    // Radiance (18.4, 14, 6.75) times the panel's area, 130 by 105: its intensity straight down.
     scene.lights.push(Light {
         position: Vec3::new(278.0, 547.8, 279.5),
-        intensity: Vec3::new(17.0, 12.0, 4.0) * (130.0 * 105.0),
+        intensity: Vec3::new(18.4, 14.0, 6.75) * (130.0 * 105.0),
     });
     scene.background = Vec3::ZERO;
     Ok(scene)
@@ -186,7 +189,7 @@ mod tests {
             (material("glass").illum, material("glass").refraction_index),
             (7, 1.5)
         );
-        assert_eq!(material("light").emission, Vec3::new(17.0, 12.0, 4.0));
+        assert_eq!(material("light").emission, Vec3::new(18.4, 14.0, 6.75));
         let bounds = scene.mesh.bounds();
         let position = scene.lights[0].position;
         assert!(bounds.min.cmplt(position).all() && position.cmplt(bounds.max).all());

@@ -16,18 +16,11 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// A view of all of `bounds` from the front, a little from the right and above.
+    /// A view of all of `bounds` from the front, a little from the right and above: the nearest one in which the box
+    /// fits into a square picture. The empty box, and a point, are seen from distance 1.
     #[must_use]
     pub fn framing(bounds: Aabb, up: Vec3) -> Self {
         let fov_deg: f32 = 38.0;
-        let (centre, radius) = if bounds.is_empty() {
-            (Vec3::ZERO, 1.0)
-        } else {
-            (
-                bounds.centre(),
-                (bounds.extent().length() * 0.5).max(f32::MIN_POSITIVE),
-            )
-        };
         // For y up: from +z; for z up: from -y.
         let front = if up.z.abs() > up.y.abs() {
             Vec3::NEG_Y
@@ -36,13 +29,35 @@ impl Camera {
         };
         let right = front.cross(up).normalize_or_zero() * -1.0;
         let towards = (front + right * 0.55 + up * 0.45).normalize();
-        // The sphere around the box touches the sides of the picture.
-        let distance = radius / (fov_deg.to_radians() * 0.5).sin();
-        Self {
-            eye: centre + towards * distance,
-            at: centre,
+        let at = if bounds.is_empty() {
+            Vec3::ZERO
+        } else {
+            bounds.centre()
+        };
+        let camera = Self {
+            eye: at + towards,
+            at,
             up,
             fov_deg,
+        };
+        // A corner is in the picture when its distance from the axis of view is at most `half` of its depth; a little
+        // space stays at the sides.
+        let half = (fov_deg.to_radians() * 0.5).tan() / 1.05;
+        let (x, y, z) = camera.frame();
+        let fits = |corner: Vec3| {
+            let from_middle = corner - at;
+            let aside = from_middle.dot(x).abs().max(from_middle.dot(y).abs());
+            aside / half - from_middle.dot(z)
+        };
+        let distance = if bounds.is_empty() {
+            0.0
+        } else {
+            bounds.corners().into_iter().map(fits).fold(0.0, f32::max)
+        };
+        let distance = if distance > 0.0 { distance } else { 1.0 };
+        Self {
+            eye: at + towards * distance,
+            ..camera
         }
     }
 
@@ -89,6 +104,41 @@ impl Camera {
         Self {
             eye: self.at + (turned * angle.cos() + up * angle.sin()) * radius * zoom,
             ..*self
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn framing_shows_all_corners_of_a_box_and_wastes_little_room() {
+        let boxes = [
+            [Vec3::ZERO, Vec3::ONE],
+            [Vec3::new(-1.0, 0.0, 5.0), Vec3::new(1.0, 20.0, 6.0)],
+            [Vec3::splat(1e5), Vec3::new(1.001e5, 1.002e5, 1e5)],
+            [Vec3::ZERO, Vec3::splat(1e-12)],
+        ];
+        for (corners, up) in boxes.into_iter().flat_map(|b| [(b, Vec3::Y), (b, Vec3::Z)]) {
+            let bounds = Aabb::of_points(corners);
+            let camera = Camera::framing(bounds, up);
+            let (x, y, z) = camera.frame();
+            let half = (camera.fov_deg.to_radians() * 0.5).tan();
+            let place = |corner: Vec3| {
+                let p = corner - camera.eye;
+                p.dot(x).abs().max(p.dot(y).abs()) / (p.dot(z) * half)
+            };
+            let most = bounds.corners().into_iter().map(place).fold(0.0, f32::max);
+            assert!((0.9..1.0).contains(&most), "{corners:?}: {most}");
+        }
+    }
+
+    #[test]
+    fn an_empty_box_and_a_point_have_a_camera() {
+        for bounds in [Aabb::EMPTY, Aabb::of_points([Vec3::ONE])] {
+            let camera = Camera::framing(bounds, Vec3::Y);
+            assert!((camera.eye - camera.at).length() > 0.9);
         }
     }
 }

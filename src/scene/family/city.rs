@@ -6,7 +6,7 @@
 use super::{Draft, Random, draft::matte, exact};
 use crate::geometry::{DVec3, Vec3};
 use crate::registry::{ParamKind, ParamSpec};
-use crate::scene::{Camera, Scene, SceneEntry, SceneError, Sizes};
+use crate::scene::{Camera, Light, Scene, SceneEntry, SceneError, Sizes};
 
 /// The family's row.
 pub const ROW: SceneEntry = SceneEntry {
@@ -26,7 +26,7 @@ pub const ROW: SceneEntry = SceneEntry {
 };
 
 /// Height of the lowest house, in lots at the rim.
-const LOWEST: f64 = 0.08;
+const LOWEST: f64 = 0.03;
 
 fn build(sizes: &Sizes) -> Result<Scene, SceneError> {
     let n = sizes.int(0);
@@ -46,9 +46,13 @@ fn build(sizes: &Sizes) -> Result<Scene, SceneError> {
     draft.floor(reach * 1.05, 0.0);
     draft.paint(matte("ground", 0.38, 0.40, 0.36));
     let size = reach as f32;
+    draft.lights.push(Light {
+        position: Vec3::new(1.6, -0.9, 1.9) * size,
+        intensity: Vec3::splat(size * size),
+    });
     draft.camera = Some(Camera {
-        eye: Vec3::new(0.55, -1.55, 0.85) * size,
-        at: Vec3::new(0.0, 0.0, 0.06) * size,
+        eye: Vec3::new(0.65, -1.75, 1.05) * size,
+        at: Vec3::new(0.0, 0.0, -0.05) * size,
         up: Vec3::Z,
         fov_deg: 42.0,
     });

@@ -7,7 +7,7 @@ use super::{Draft, draft::matte, exact};
 use crate::geometry::{DVec3, Vec3};
 use crate::registry::{ParamKind, ParamSpec};
 use crate::scene::polygon::Cutter;
-use crate::scene::{Camera, Scene, SceneEntry, SceneError, Sizes};
+use crate::scene::{Camera, Light, Scene, SceneEntry, SceneError, Sizes};
 
 /// The family's row.
 pub const ROW: SceneEntry = SceneEntry {
@@ -69,6 +69,10 @@ fn build(sizes: &Sizes) -> Result<Scene, SceneError> {
     let reach = f64::from(n);
     draft.floor(reach, -0.5 * reach - 0.05);
     draft.paint(matte("floor", 0.42, 0.45, 0.48));
+    draft.lights.push(Light {
+        position: Vec3::new(1.2, -1.0, 2.2) * reach as f32,
+        intensity: Vec3::splat(4.0 * (reach * reach) as f32),
+    });
     draft.camera = Some(Camera {
         eye: Vec3::new(0.75, -1.55, 1.05) * (n as f32 + 0.4),
         at: Vec3::new(0.0, 0.0, -0.06) * n as f32,

@@ -6,7 +6,7 @@
 use super::{Draft, Icosphere, Random, draft::matte};
 use crate::geometry::{DVec3, Vec3};
 use crate::registry::{ParamKind, ParamSpec};
-use crate::scene::{Camera, Material, Scene, SceneEntry, SceneError, Sizes};
+use crate::scene::{Camera, Light, Material, Scene, SceneEntry, SceneError, Sizes};
 
 /// The family's row.
 pub const ROW: SceneEntry = SceneEntry {
@@ -48,13 +48,16 @@ fn build(sizes: &Sizes) -> Result<Scene, SceneError> {
         draft.sphere(&unit, DVec3::new(x, y, 0.62), 0.2);
     }
     draft.paint(Material {
-        diffuse: Vec3::ZERO,
         specular: Vec3::ONE,
         shininess: 1000.0,
         refraction_index: 1.5,
         opacity: 0.1,
         illum: 7,
-        ..matte("glass", 0.0, 0.0, 0.0)
+        ..matte("glass", 0.1, 0.1, 0.1)
+    });
+    draft.lights.push(Light {
+        position: Vec3::new(3.0, -2.0, 3.0),
+        intensity: Vec3::splat(16.0),
     });
     draft.camera = Some(Camera {
         eye: Vec3::new(1.1, -2.7, 1.55),

@@ -6,7 +6,7 @@
 use super::{Draft, Icosphere, draft::matte, exact};
 use crate::geometry::{DVec3, Vec3};
 use crate::registry::{ParamKind, ParamSpec};
-use crate::scene::{Camera, Scene, SceneEntry, SceneError, Sizes};
+use crate::scene::{Camera, Light, Scene, SceneEntry, SceneError, Sizes};
 
 /// The family's row.
 pub const ROW: SceneEntry = SceneEntry {
@@ -69,8 +69,12 @@ fn build(sizes: &Sizes) -> Result<Scene, SceneError> {
     draft.floor(2.0 * f64::from(n) + 1.0, -0.85);
     draft.paint(matte("floor", 0.45, 0.45, 0.43));
     let size = n as f32;
+    draft.lights.push(Light {
+        position: Vec3::new(2.5, -1.5, 4.0) * size,
+        intensity: Vec3::splat(16.0 * size * size),
+    });
     draft.camera = Some(Camera {
-        eye: Vec3::new(1.7 * size, -3.4 * size - 0.8, 1.9 * size + 0.6),
+        eye: Vec3::new(1.5 * size, -3.0 * size, 1.5 * size + 0.5),
         at: Vec3::new(0.0, 0.0, 0.42 * size - 0.5),
         up: Vec3::Z,
         fov_deg: 38.0,

@@ -16,7 +16,7 @@
 use super::{Draft, Icosphere, draft::matte, icosphere};
 use crate::geometry::{DVec3, Vec3};
 use crate::registry::{ParamKind, ParamSpec};
-use crate::scene::{Camera, Scene, SceneEntry, SceneError, Sizes};
+use crate::scene::{Camera, Light, Scene, SceneEntry, SceneError, Sizes};
 use glam::DQuat;
 
 /// The family's row.
@@ -91,6 +91,10 @@ fn build(sizes: &Sizes) -> Result<Scene, SceneError> {
     }
     draft.floor(6.0, -RADIUS);
     draft.paint(matte("floor", 0.55, 0.55, 0.5));
+    draft.lights.push(Light {
+        position: Vec3::new(2.6, -2.2, 4.0),
+        intensity: Vec3::splat(30.0),
+    });
     draft.camera = Some(Camera {
         eye: Vec3::new(1.5, -1.9, 1.25),
         at: Vec3::new(0.0, 0.0, 0.08),

@@ -44,7 +44,7 @@ fn build(sizes: &Sizes) -> Result<Scene, SceneError> {
     draft.paint(teapot::glaze());
     let first = draft.vertices.len() as u32;
     for ring in 0..=ROWS {
-        let (out, up) = profile(ring);
+        let (out, up) = profile(ring, radius);
         for segment in 0..SEGMENTS {
             let (cos, sin) = exact::turn(segment, SEGMENTS);
             draft.vertex(DVec3::new(cos * out, sin * out, up) * radius);
@@ -71,10 +71,10 @@ fn build(sizes: &Sizes) -> Result<Scene, SceneError> {
 }
 
 /// Distance from the axis and height of a ring, in radii: first the field, then tread and riser in turns.
-fn profile(ring: u32) -> (f64, f64) {
+fn profile(ring: u32, radius: f64) -> (f64, f64) {
     if ring == 0 {
-        // Not the centre itself, where 256 triangles would collapse.
-        return (0.001, 0.0);
+        // Not the centre itself, where 256 triangles would collapse: a hole under the pot.
+        return (0.05 / radius, 0.0);
     }
     let step = f64::from((ring - 1) / 2) / 32.0;
     let tread = f64::from(ring / 2) / 32.0;

@@ -6,7 +6,7 @@
 use super::{Draft, Icosphere, draft::matte, rings::cone};
 use crate::geometry::{DVec3, Vec3};
 use crate::registry::{ParamKind, ParamSpec};
-use crate::scene::{Camera, Scene, SceneEntry, SceneError, Sizes};
+use crate::scene::{Camera, Light, Scene, SceneEntry, SceneError, Sizes};
 
 /// The family's row.
 pub const ROW: SceneEntry = SceneEntry {
@@ -60,6 +60,10 @@ fn build(sizes: &Sizes) -> Result<Scene, SceneError> {
     draft.paint(matte("bark", 0.42, 0.34, 0.24));
     draft.floor(3.2, 0.0);
     draft.paint(matte("ground", 0.36, 0.42, 0.28));
+    draft.lights.push(Light {
+        position: Vec3::new(4.0, -3.0, 8.0),
+        intensity: Vec3::splat(80.0),
+    });
     draft.camera = Some(Camera {
         eye: Vec3::new(2.2, -6.4, 2.9),
         at: Vec3::new(0.0, 0.0, 1.65),

@@ -49,21 +49,26 @@ fn combinations(specs: &'static [ParamSpec]) -> Vec<Params> {
         })
 }
 
-/// What is built of one accelerator over one scene: all its parameters at its own n, and the defaults at given ones.
+/// The n at which all parameters of an accelerator are tried: small, and not one at which cells meet the scenes' planes.
+const EVERYWHERE: u32 = 5;
+
+/// What is built of one accelerator over one scene: all its parameters, and the defaults at several n, where it has
+/// one, the predicted among them.
 fn builds(entry: &'static AcceleratorEntry, scene: &Setting) -> Vec<(Choice, Option<u32>)> {
     let choice = |params| Choice {
         name: entry.name.to_owned(),
         params,
     };
+    let n = entry.resolution.map(|_| EVERYWHERE);
     let all = combinations(entry.params)
         .into_iter()
-        .map(|params| (choice(params), None));
-    let resolutions = match entry.resolution {
-        Some(_) => scene.resolutions,
-        None => &[],
-    };
+        .map(|params| (choice(params), n));
+    if n.is_none() {
+        return all.collect();
+    }
     let defaults = choice(Params::defaults(entry.params));
-    all.chain(resolutions.iter().map(|&n| (defaults.clone(), Some(n))))
+    let resolutions = scene.resolutions.iter().copied().map(Some).chain([None]);
+    all.chain(resolutions.map(|n| (defaults.clone(), n)))
         .collect()
 }
 

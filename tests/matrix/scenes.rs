@@ -209,7 +209,7 @@ fn coplanar() -> Triangles {
             0.5,
         )
     };
-    (0..200).map(|_| [corner(), corner(), corner()]).collect()
+    (0..80).map(|_| [corner(), corner(), corner()]).collect()
 }
 
 /// A soup in which every third triangle is a line or a point.

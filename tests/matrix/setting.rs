@@ -58,7 +58,7 @@ impl Setting {
 
     fn aimed(&self) -> &(Vec<Ray>, Vec<bool>) {
         self.rays.get_or_init(|| {
-            let count = (TESTS / self.mesh.len().max(1)).clamp(300, 2000);
+            let count = (TESTS / self.mesh.len().max(1)).clamp(300, 1400);
             let aimed = rays::aimed_at(&self.mesh, count as u32, 1);
             aimed.iter().map(|a| (a.ray, a.in_plane)).unzip()
         })

@@ -33,6 +33,7 @@ mod grid;
 mod kd_tree;
 mod sah;
 mod slab;
+mod stack;
 #[cfg(test)]
 mod testbed;
 mod traced;

@@ -11,7 +11,7 @@
 //! a stack with its entry; what begins beyond the nearest hit is dropped when it is popped.
 //!
 //! **Source:** I. Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007, for the binned build.
-//! **Differs:** depth is bounded by [`MAX_DEPTH`]: where the heuristic would dig deeper, references are halved by
+//! **Differs:** depth is bounded by the stack's room: where the heuristic would dig deeper, references are halved by
 //! index, and the stack needs no check.
 
 use crate::geometry::{Aabb, Ray};
@@ -19,6 +19,7 @@ use crate::registry::{ParamKind, ParamSpec, Params};
 use crate::scene::Mesh;
 
 use super::slab::{Corners, SlabRay, corners};
+use super::stack::{MAX_DEPTH, Room, Stack, room};
 use super::{AcceleratorEntry, Structure, StructureStats, Visitor, finish};
 
 mod binned;
@@ -45,9 +46,6 @@ pub(super) const ENTRY: AcceleratorEntry = AcceleratorEntry {
     resolution: None,
     build: |request| finish(Bvh::build(request.mesh, request.params), request),
 };
-
-/// No leaf lies deeper than this. A balanced tree of 2³¹ triangles has depth 31.
-pub(super) const MAX_DEPTH: usize = 64;
 
 /// A box and what is in it: two children at `first` and `first + 1`, or `count` references from `first` on.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -93,14 +91,6 @@ pub struct Bvh {
     bounds: Aabb,
 }
 
-/// A node that still waits, and where the ray enters it.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Waiting {
-    node: u32,
-    entry: f32,
-    exit: f32,
-}
-
 impl Bvh {
     /// Builds the tree over `mesh`, in parallel in the rayon pool it is called in; the same tree whatever its threads.
     #[must_use]
@@ -120,23 +110,23 @@ impl Bvh {
 }
 
 impl Structure for Bvh {
-    type Scratch = [Waiting; MAX_DEPTH];
+    type Scratch = Room;
 
-    fn scratch(&self) -> Self::Scratch {
-        [Waiting::default(); MAX_DEPTH]
+    fn scratch(&self) -> Room {
+        room()
     }
 
     #[inline(always)]
-    fn traverse<V: Visitor>(&self, ray: &Ray, stack: &mut Self::Scratch, visitor: &mut V) {
-        let Some(mut node) = self.nodes.first() else {
+    fn traverse<V: Visitor>(&self, ray: &Ray, room: &mut Room, visitor: &mut V) {
+        let Some(root) = self.nodes.first() else {
             return;
         };
         let slabs = SlabRay::new(ray, &self.bounds);
-        let Some((mut entry, mut exit)) = slabs.interval(&node.corners, visitor.t_limit()) else {
+        let Some((mut entry, mut exit)) = slabs.interval(&root.corners, visitor.t_limit()) else {
             return;
         };
-        let mut place = 0;
-        let mut waiting = 0;
+        let mut stack = Stack::new(room);
+        let (mut node, mut place) = (root, 0);
         loop {
             visitor.step(
                 u64::from(place),
@@ -163,44 +153,25 @@ impl Structure for Bvh {
                 if a_met || b_met {
                     // The nearer child is next; the other waits.
                     let b_next = !a_met || (b_met && b_entry < a_entry);
-                    if a_met && b_met {
-                        stack[waiting] = if b_next {
-                            Waiting {
-                                node: first,
-                                entry: a_entry,
-                                exit: a_exit,
-                            }
-                        } else {
-                            Waiting {
-                                node: first + 1,
-                                entry: b_entry,
-                                exit: b_exit,
-                            }
-                        };
-                        waiting += 1;
-                    }
-                    (node, place, entry, exit) = if b_next {
-                        (b, first + 1, b_entry, b_exit)
+                    if b_next {
+                        if a_met {
+                            stack.push(first, a_entry, a_exit);
+                        }
+                        (node, place, entry, exit) = (b, first + 1, b_entry, b_exit);
                     } else {
-                        (a, first, a_entry, a_exit)
-                    };
+                        if b_met {
+                            stack.push(first + 1, b_entry, b_exit);
+                        }
+                        (node, place, entry, exit) = (a, first, a_entry, a_exit);
+                    }
                     continue;
                 }
             }
-            // What waits and begins strictly beyond the limit can no longer change the answer.
-            let limit = visitor.t_limit();
-            loop {
-                if waiting == 0 {
-                    return;
-                }
-                waiting -= 1;
-                let next = stack[waiting];
-                if next.entry <= limit {
-                    node = &self.nodes[next.node as usize];
-                    (place, entry, exit) = (next.node, next.entry, next.exit);
-                    break;
-                }
-            }
+            let Some(next) = stack.pop(visitor.t_limit()) else {
+                return;
+            };
+            node = &self.nodes[next.node as usize];
+            (place, entry, exit) = (next.node, next.entry, next.exit);
         }
     }
 

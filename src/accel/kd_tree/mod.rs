@@ -24,6 +24,7 @@ use crate::registry::{ParamKind, ParamSpec, Params};
 use crate::scene::Mesh;
 
 use super::slab::{SlabRay, corners};
+use super::stack::{MAX_DEPTH, Room, Stack, room};
 use super::{AcceleratorEntry, Structure, StructureStats, Visitor, finish};
 
 mod build;
@@ -44,9 +45,6 @@ pub(super) const ENTRY: AcceleratorEntry = AcceleratorEntry {
     resolution: None,
     build: |request| finish(KdTree::build(request.mesh, request.params), request),
 };
-
-/// No leaf lies deeper than this.
-const MAX_DEPTH: usize = 64;
 
 /// The axis of a leaf.
 const LEAF: u32 = 3;
@@ -109,14 +107,6 @@ pub struct KdTree {
     bounds: Aabb,
 }
 
-/// A node that still waits, with the interval of the ray inside it.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Waiting {
-    node: u32,
-    entry: f32,
-    exit: f32,
-}
-
 impl KdTree {
     /// Builds the tree over `mesh`, in parallel in the rayon pool it is called in; the same tree whatever its threads.
     #[must_use]
@@ -135,21 +125,21 @@ impl KdTree {
 }
 
 impl Structure for KdTree {
-    type Scratch = [Waiting; MAX_DEPTH];
+    type Scratch = Room;
 
-    fn scratch(&self) -> Self::Scratch {
-        [Waiting::default(); MAX_DEPTH]
+    fn scratch(&self) -> Room {
+        room()
     }
 
     #[inline(always)]
-    fn traverse<V: Visitor>(&self, ray: &Ray, stack: &mut Self::Scratch, visitor: &mut V) {
+    fn traverse<V: Visitor>(&self, ray: &Ray, room: &mut Room, visitor: &mut V) {
         let slabs = SlabRay::new(ray, &self.bounds);
         let Some((mut entry, mut exit)) = slabs.interval(&corners(self.bounds), visitor.t_limit())
         else {
             return;
         };
+        let mut stack = Stack::new(room);
         let mut place = 0;
-        let mut waiting = 0;
         loop {
             let node = self.nodes[place as usize];
             visitor.step(
@@ -168,12 +158,7 @@ impl Structure for KdTree {
                     place = far;
                 } else {
                     if far_entry <= exit {
-                        stack[waiting] = Waiting {
-                            node: far,
-                            entry: far_entry,
-                            exit,
-                        };
-                        waiting += 1;
+                        stack.push(far, far_entry, exit);
                     }
                     (place, exit) = (near, near_exit);
                 }
@@ -184,20 +169,11 @@ impl Structure for KdTree {
                     return;
                 }
             }
-            // What waits and begins strictly beyond the limit can no longer change the answer. What waits below it may
-            // begin earlier, but only by the pad.
-            let limit = visitor.t_limit();
-            loop {
-                if waiting == 0 {
-                    return;
-                }
-                waiting -= 1;
-                let next = stack[waiting];
-                if next.entry <= limit {
-                    (place, entry, exit) = (next.node, next.entry, next.exit);
-                    break;
-                }
-            }
+            // What waits below a dropped node may begin earlier than it, by the pad, so all are looked at.
+            let Some(next) = stack.pop(visitor.t_limit()) else {
+                return;
+            };
+            (place, entry, exit) = (next.node, next.entry, next.exit);
         }
     }
 

@@ -273,7 +273,38 @@ pub(super) fn finish(drawn: &str, widths: &[f64], head: &Head) -> String {
             svg.push(line.to_owned());
         }
     }
-    svg.join("\n") + "\n"
+    joined(&svg) + "\n"
+}
+
+/// `lines` of SVG, with neighbouring polylines of one style made one path: the dashes of a line are a single element.
+fn joined(lines: &[String]) -> String {
+    const START: &str = "<polyline ";
+    let split = |line: &'_ str| -> Option<(String, String)> {
+        let (style, points) = line.strip_prefix(START)?.split_once(" points=\"")?;
+        let points = points.strip_suffix("\"/>")?.trim_end();
+        Some((style.to_owned(), points.to_owned()))
+    };
+    let mut out: Vec<String> = Vec::new();
+    let mut path: Option<(String, Vec<String>)> = None;
+    let close = |path: Option<(String, Vec<String>)>, out: &mut Vec<String>| {
+        if let Some((style, pieces)) = path {
+            out.push(format!("<path {style} d=\"M{}\"/>", pieces.join("M")));
+        }
+    };
+    for line in lines {
+        match (split(line), &mut path) {
+            (Some((style, points)), Some((open, pieces))) if style == *open => pieces.push(points),
+            (Some((style, points)), _) => {
+                close(path.replace((style, vec![points])), &mut out);
+            }
+            (None, _) => {
+                close(path.take(), &mut out);
+                out.push(line.clone());
+            }
+        }
+    }
+    close(path, &mut out);
+    out.join("\n")
 }
 
 /// `points` as pieces whose lengths, and the gaps between them, follow `pattern` (dash, gap, dash, gap …).
@@ -328,6 +359,21 @@ mod tests {
             .sum();
         assert!((length - 40.0).abs() < 1e-9, "{length}");
         assert_eq!(dashed(&[(0.0, 0.0), (9.0, 0.0)], &[]).len(), 1);
+    }
+
+    #[test]
+    fn neighbouring_lines_of_one_style_become_one_path() {
+        let line = |c: &str, p: &str| format!("<polyline stroke=\"{c}\" points=\"{p} \"/>");
+        let lines = [
+            line("a", "1,2 3,4"),
+            line("a", "5,6 7,8"),
+            line("b", "0,0 1,1"),
+            "</svg>".to_owned(),
+        ];
+        assert_eq!(
+            joined(&lines),
+            "<path stroke=\"a\" d=\"M1,2 3,4M5,6 7,8\"/>\n<path stroke=\"b\" d=\"M0,0 1,1\"/>\n</svg>"
+        );
     }
 
     #[test]

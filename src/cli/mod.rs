@@ -1,0 +1,79 @@
+//! The command line: parse, run, exit code. Data goes to standard output, everything else to standard error.
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use clap::{CommandFactory, Parser};
+
+mod args;
+mod choices;
+mod export;
+mod failure;
+mod interrupt;
+mod list;
+mod progress;
+mod rays;
+mod render;
+mod session;
+mod sweep;
+mod table;
+
+pub use args::Cli;
+pub use failure::Failure;
+
+use args::Command;
+
+/// Runs the program on the process's arguments.
+#[must_use]
+pub fn main() -> ExitCode {
+    match run(Cli::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            if failure.code() != 0 {
+                eprintln!("raylab: {failure}");
+            }
+            ExitCode::from(failure.code())
+        }
+    }
+}
+
+/// Runs one command.
+///
+/// # Errors
+/// What the command failed of; [`Failure::code`] is the exit code.
+pub fn run(cli: Cli) -> Result<(), Failure> {
+    match cli.command {
+        None => Err(Failure::Usage(
+            "there is no terminal to open the lab in; use a command such as `raylab sweep` or `raylab render`, see \
+             `raylab --help`"
+                .to_owned(),
+        )),
+        Some(Command::List(args)) => list::run(&args),
+        Some(Command::Render(args)) => render::run(&args),
+        Some(Command::Rays(args)) => rays::write(&args),
+        Some(Command::Trace(args)) => rays::trace(&args),
+        Some(Command::Completions { shell }) => completions(shell),
+        Some(Command::Man) => manual(),
+        Some(Command::Sweep(args)) => sweep::run(&args),
+        Some(Command::Report(args)) => export::run(&args),
+    }
+}
+
+/// Writes `text` to standard output.
+fn print(text: &str) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    out.write_all(text.as_bytes())?;
+    Ok(out.flush()?)
+}
+
+fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut Cli::command(), "raylab", &mut script);
+    print(&String::from_utf8_lossy(&script))
+}
+
+fn manual() -> Result<(), Failure> {
+    let mut page = Vec::new();
+    clap_mangen::Man::new(Cli::command()).render(&mut page)?;
+    print(&String::from_utf8_lossy(&page))
+}

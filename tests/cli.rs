@@ -94,7 +94,7 @@ const REFUSALS: &[Refusal] = &[
         &["teapto", "did you mean 'teapot'?"],
     ),
     refusal(&["render", "soup:none"], 2, &["none"]),
-    refusal(&["render", "soup:1000000000000"], 2, &["soup"]),
+    refusal(&["render", "soup:1000000000000"], 2, &["20000000"]),
     refusal(
         &["render", "one", "--channel", "colour"],
         2,

@@ -191,7 +191,7 @@ impl<M: Mailbox> Structure for Grid<M> {
                 true,
                 list.len() as u32,
                 walk.base + walk.entry,
-                walk.base + exit.1,
+                walk.base + exit,
             );
             for &prim in list {
                 if mailbox.takes(prim) && visitor.test(prim) {

@@ -140,7 +140,7 @@ fn nasty_meshes_are_answered_as_by_brute_force_at_every_resolution() {
         let resolutions: &[u32] = if name == "twins" {
             &[1, 8]
         } else {
-            &[1, 2, 3, 16, 77]
+            &[1, 2, 16, 45]
         };
         for &n in resolutions {
             assert_agrees_at(
@@ -280,7 +280,7 @@ fn no_cell_is_skipped_at_any_resolution() {
         (long, [1024, 3, 5]),
     ] {
         let grid = cells_of(bounds, dims);
-        for _ in 0..300 {
+        for _ in 0..80 {
             let half = bounds.extent() * 0.5;
             let target = bounds.centre() + half * dice.vector();
             let origin = bounds.centre() + half * 3.0 * dice.vector();
@@ -292,8 +292,8 @@ fn no_cell_is_skipped_at_any_resolution() {
                 spans.windows(2).all(|pair| pair[0][1] == pair[1][0]),
                 "a gap"
             );
-            for k in 0..2000 {
-                let t = f64::from(k) * 0.001;
+            for k in 0..1000 {
+                let t = f64::from(k) * 0.002;
                 let point = ray.origin.as_dvec3() + t * ray.dir.as_dvec3();
                 if let Some(cell) = cell_around(&grid.lattice, point) {
                     assert!(
@@ -393,24 +393,22 @@ fn the_interval_of_the_ray_bounds_the_walk() {
 }
 
 #[test]
-fn rays_from_very_far_meet_the_cells_they_are_aimed_at() {
-    let grid = cells_of(
-        Aabb {
-            min: Vec3::ZERO,
-            max: Vec3::splat(64.0),
-        },
-        [64; 3],
-    );
-    for exponent in [4, 10, 20, 40, 80] {
-        // Exactly aimed: origin = target - distance · dir holds in `f32` only along axes and diagonals of zeros.
-        let distance = 2_f32.powi(exponent);
-        let ray = Ray::new(Vec3::new(-distance, 5.5, 9.5), Vec3::X);
-        assert_eq!(trail(&grid, &ray).cells.len(), 64);
-        let slanted = Ray::new(
-            Vec3::new(-distance, -distance, 9.5),
-            Vec3::new(1.0, 1.0, 0.0),
-        );
-        assert!(trail(&grid, &slanted).cells.len() >= 64, "at 2^{exponent}");
+fn rays_from_very_far_meet_the_cells_on_their_way() {
+    let bounds = Aabb {
+        min: Vec3::ZERO,
+        max: Vec3::splat(64.0),
+    };
+    let grid = cells_of(bounds, [64; 3]);
+    let dir = Vec3::new(3.0, 5.0, 7.0);
+    for exponent in [4, 10, 24, 40, 55] {
+        // All numbers are exact: the line runs through the origin.
+        let trail = trail(&grid, &Ray::new(-dir * 2_f32.powi(exponent), dir));
+        for k in 0..900 {
+            let point = dir.as_dvec3() * (f64::from(k) * 0.01);
+            if let Some(cell) = cell_around(&grid.lattice, point) {
+                assert!(trail.cells.contains(&cell), "2^{exponent}: {point}");
+            }
+        }
     }
 }
 

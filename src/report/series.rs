@@ -245,20 +245,20 @@ fn put<T>(items: &mut Vec<T>, n: impl Fn(&T) -> f64, item: T) {
 /// The accelerator of `run` as a person would have written it: with the parameters that differ from their defaults.
 #[must_use]
 pub fn accel_label(run: &Run) -> String {
-    let specs = accel::entry(&run.accel).map_or(&[][..], |entry| entry.params);
-    let kernel = kernel_specs(run);
-    label(&run.accel, &run.params, specs, |key| {
-        specs.iter().any(|s| s.name == key) || !kernel.iter().any(|s| s.name == key)
-    })
+    let ours = |key| kernel_key(run, key).is_none().then_some(key);
+    label(&run.accel, &run.params, accel_specs(run), ours)
 }
 
 /// The kernel of `run` as a person would have written it: with the parameters that differ from their defaults.
 #[must_use]
 pub fn kernel_label(run: &Run) -> String {
-    let specs = kernel_specs(run);
-    label(&run.kernel, &run.params, specs, |key| {
-        specs.iter().any(|s| s.name == key)
+    label(&run.kernel, &run.params, kernel_specs(run), |key| {
+        kernel_key(run, key)
     })
+}
+
+fn accel_specs(run: &Run) -> &'static [ParamSpec] {
+    accel::entry(&run.accel).map_or(&[][..], |entry| entry.params)
 }
 
 fn kernel_specs(run: &Run) -> &'static [ParamSpec] {
@@ -268,14 +268,28 @@ fn kernel_specs(run: &Run) -> &'static [ParamSpec] {
         .map_or(&[][..], |entry| entry.params)
 }
 
-/// `name:key=value…` with those of `params` that `ours` accepts and that differ from the defaults of `specs`.
-fn label(name: &str, params: &Params, specs: &[ParamSpec], ours: impl Fn(&str) -> bool) -> String {
+/// What the kernel of `run` calls the parameter that stands under `key`; `None` where it is the accelerator's.
+///
+/// A run holds both kinds together, the kernel's as `kernel.KEY` where the accelerator has one of the same name.
+fn kernel_key<'a>(run: &Run, key: &'a str) -> Option<&'a str> {
+    let has = |specs: &[ParamSpec]| specs.iter().any(|s| s.name == key);
+    key.strip_prefix("kernel.")
+        .or_else(|| (!has(accel_specs(run)) && has(kernel_specs(run))).then_some(key))
+}
+
+/// `name:key=value…` with those of `params` that have a key of `ours` and differ from the defaults of `specs`.
+fn label<'a>(
+    name: &str,
+    params: &'a Params,
+    specs: &[ParamSpec],
+    ours: impl Fn(&'a str) -> Option<&'a str>,
+) -> String {
     let defaults = Params::defaults(specs);
     params
         .iter()
-        .filter(|(key, value)| {
-            *key != N_RULE && ours(key) && !defaults.iter().any(|d| d == (*key, *value))
-        })
+        .filter(|(key, _)| *key != N_RULE)
+        .filter_map(|(key, value)| Some((ours(key)?, value)))
+        .filter(|pair| !defaults.iter().any(|default| default == *pair))
         .fold(name.to_owned(), |label, (key, value)| {
             format!("{label}:{key}={value}")
         })
@@ -346,6 +360,18 @@ mod tests {
         grid.params = fixture::params(&[("mystery", "7"), ("n_rule", "auto")]);
         assert_eq!(accel_label(&grid), "grid:mystery=7");
         assert_eq!(kernel_label(&grid), "woop");
+        let mut sheet = run("bvh", None);
+        sheet.kernel = "sheet-unsigned".to_owned();
+        for (eps, label) in [
+            ("1e-5", "sheet-unsigned"),
+            ("0.5", "sheet-unsigned:eps=0.5"),
+        ] {
+            for key in ["eps", "kernel.eps"] {
+                sheet.params = fixture::params(&[(key, eps)]);
+                assert_eq!(accel_label(&sheet), "bvh");
+                assert_eq!(kernel_label(&sheet), label);
+            }
+        }
         for entry in accel::ACCELERATORS {
             let mut default = run(entry.name, None);
             default.params = Params::defaults(entry.params);

@@ -10,6 +10,9 @@ use crate::scene::{self, SceneError};
 
 use super::{Provenance, SceneFacts};
 
+/// The commit that the program was built from; empty where it is not known, and in debug builds.
+const COMMIT: &str = env!("RAYLAB_COMMIT");
+
 impl Provenance {
     /// Looks at the program, the machine and the scenes of `plan`; `command` is the command line.
     ///
@@ -21,7 +24,7 @@ impl Provenance {
         let scenes = plan.scenes.iter().map(|spec| scene_facts(spec));
         Ok(Self {
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            commit: String::from(env!("RAYLAB_COMMIT")),
+            commit: COMMIT.to_owned(),
             dirty: !env!("RAYLAB_DIRTY").is_empty(),
             rustc: env!("RAYLAB_RUSTC").to_owned(),
             target: env!("RAYLAB_TARGET").to_owned(),

@@ -254,34 +254,35 @@ impl Sweep<'_> {
     fn sample(&mut self, mut live: Vec<Live>, setting: &Setting) {
         while !live.is_empty() {
             self.shuffle(&mut live);
-            let mut again = Vec::with_capacity(live.len());
-            let mut waiting: Vec<f64> = live.iter().map(|run| run.seconds).collect();
-            for (i, mut run) in live.into_iter().enumerate() {
-                let Some(speed) = self.take_sample(&mut run, setting) else {
+            let mut turns: Vec<Option<Live>> = live.into_iter().map(Some).collect();
+            for turn in 0..turns.len() {
+                let Some(run) = &mut turns[turn] else {
+                    continue;
+                };
+                let Some(speed) = self.take_sample(run, setting) else {
                     return;
                 };
                 run.speeds.push(speed);
-                waiting[i] = run.seconds;
+                let id = run.record.id.clone();
                 let budget = &self.plan.budget;
                 let stop = stop_reason(&run.speeds, run.seconds, budget, self.plan.seed);
-                if stop.is_some() {
+                let complete = stop.and_then(|reason| Some((turns[turn].take()?, reason)));
+                if let Some((run, _)) = &complete {
                     self.estimate.complete(run.seconds);
-                    // Whatever it took: nothing of it is left.
-                    waiting[i] = f64::INFINITY;
                 }
-                let (done, seconds_left) = self.estimate.tell(waiting.iter().copied());
+                let spent: Vec<f64> = turns.iter().flatten().map(|run| run.seconds).collect();
+                let (done, seconds_left) = self.estimate.tell(&spent);
                 (self.sink)(Event::Sampled {
-                    id: run.record.id.clone(),
+                    id,
                     mrays_per_s: speed,
                     done,
                     seconds_left,
                 });
-                match stop {
-                    Some(reason) => self.finish(run.finish(reason)),
-                    None => again.push(run),
+                if let Some((run, reason)) = complete {
+                    self.finish(run.finish(reason));
                 }
             }
-            live = again;
+            live = turns.into_iter().flatten().collect();
         }
     }
 
@@ -310,15 +311,9 @@ impl Sweep<'_> {
     }
 
     /// Waits while the sweep is paused; whether it may go on, or is stopped.
-    fn may_go_on(&mut self) -> bool {
-        let start = Instant::now();
-        let mut waited = false;
+    fn may_go_on(&self) -> bool {
         while self.control.paused() && !self.control.stopped() {
             std::thread::sleep(PAUSE);
-            waited = true;
-        }
-        if waited {
-            self.estimate.waited(start.elapsed().as_secs_f64());
         }
         !self.control.stopped()
     }

@@ -11,49 +11,7 @@ use crate::registry::Choice;
 use crate::scene;
 use crate::trace;
 
-use super::LabError;
-
-/// A grid resolution as asked for; in JSON `"auto"` or a number.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(from = "Written", into = "Written")]
-pub enum NRule {
-    /// The predictor chooses.
-    Auto,
-    /// This one.
-    Fixed(u32),
-}
-
-/// How [`NRule`] is written in JSON.
-#[derive(Serialize, Deserialize)]
-#[serde(untagged)]
-enum Written {
-    Number(u32),
-    Word(Word),
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-enum Word {
-    Auto,
-}
-
-impl From<Written> for NRule {
-    fn from(written: Written) -> Self {
-        match written {
-            Written::Number(n) => Self::Fixed(n),
-            Written::Word(Word::Auto) => Self::Auto,
-        }
-    }
-}
-
-impl From<NRule> for Written {
-    fn from(rule: NRule) -> Self {
-        match rule {
-            NRule::Fixed(n) => Self::Number(n),
-            NRule::Auto => Self::Word(Word::Auto),
-        }
-    }
-}
+use super::{LabError, NRule};
 
 /// What a sweep varies. Its runs are the product of the lists; accelerators without a resolution run once for all n.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -382,15 +340,6 @@ mod tests {
             seed: 1,
         };
         assert_eq!(run.id(), "387316b867d3");
-    }
-
-    #[test]
-    fn resolutions_are_numbers_and_a_word_in_json() {
-        let list = vec![NRule::Fixed(8), NRule::Auto];
-        let text = serde_json::to_string(&list).unwrap();
-        assert_eq!(text, r#"[8,"auto"]"#);
-        assert_eq!(serde_json::from_str::<Vec<NRule>>(&text).unwrap(), list);
-        assert!(serde_json::from_str::<NRule>("\"atuo\"").is_err());
     }
 
     #[test]

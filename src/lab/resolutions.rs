@@ -1,8 +1,52 @@
-//! Lists of grid resolutions as they are written: `1..256`, `8..64:8`, `8,16,auto`.
+//! Grid resolutions, and lists of them as they are written: `1..256`, `8..64:8`, `8,16,auto`.
+
+use serde::{Deserialize, Serialize};
 
 use crate::accel::MAX_N;
 
-use super::{LabError, NRule};
+use super::LabError;
+
+/// A grid resolution as asked for; in JSON `"auto"` or a number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(from = "Written", into = "Written")]
+pub enum NRule {
+    /// The predictor chooses.
+    Auto,
+    /// This one.
+    Fixed(u32),
+}
+
+/// How [`NRule`] is written in JSON.
+#[derive(Serialize, Deserialize)]
+#[serde(untagged)]
+enum Written {
+    Number(u32),
+    Word(Word),
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Word {
+    Auto,
+}
+
+impl From<Written> for NRule {
+    fn from(written: Written) -> Self {
+        match written {
+            Written::Number(n) => Self::Fixed(n),
+            Written::Word(Word::Auto) => Self::Auto,
+        }
+    }
+}
+
+impl From<NRule> for Written {
+    fn from(rule: NRule) -> Self {
+        match rule {
+            NRule::Fixed(n) => Self::Number(n),
+            NRule::Auto => Self::Word(Word::Auto),
+        }
+    }
+}
 
 /// Reads a list of resolutions: items between commas, each `auto`, a number, `A..B` or `A..B:S`. A resolution that
 /// comes twice is kept once.
@@ -128,5 +172,14 @@ mod tests {
             let why = parse_n_list(text).unwrap_err().to_string();
             assert!(why.contains(part), "{text}: {why}");
         }
+    }
+
+    #[test]
+    fn resolutions_are_numbers_and_a_word_in_json() {
+        let list = vec![NRule::Fixed(8), NRule::Auto];
+        let text = serde_json::to_string(&list).unwrap();
+        assert_eq!(text, r#"[8,"auto"]"#);
+        assert_eq!(serde_json::from_str::<Vec<NRule>>(&text).unwrap(), list);
+        assert!(serde_json::from_str::<NRule>("\"atuo\"").is_err());
     }
 }

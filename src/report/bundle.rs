@@ -12,14 +12,14 @@
 //! was torn is dropped.
 
 use std::collections::BTreeMap;
-use std::fs::{self, File, OpenOptions};
-use std::io::Write;
+use std::fs;
 use std::path::{Path, PathBuf};
 
-use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use serde::{Deserialize, Serialize};
 
 use crate::lab::{Done, Event, Plan, RunConfig, RunRecord};
 
+use super::journal::Journal;
 use super::{Provenance, Report, ReportError, Run};
 
 /// A bundle that a sweep writes to.
@@ -207,70 +207,6 @@ impl Bundle {
 /// Report, journal of runs, journal of samples.
 fn paths(dir: &Path) -> [PathBuf; 3] {
     ["report.json", "runs.jsonl", "samples.jsonl"].map(|name| dir.join(name))
-}
-
-/// A file of JSON lines that only grows.
-#[derive(Debug)]
-struct Journal {
-    path: PathBuf,
-    file: File,
-}
-
-impl Journal {
-    /// Opens for appending after the first `length` bytes; what stands behind them is cut off.
-    fn open(path: PathBuf, length: u64) -> Result<Self, ReportError> {
-        let open = || {
-            let file = OpenOptions::new().create(true).append(true).open(&path)?;
-            file.set_len(length)?;
-            Ok(file)
-        };
-        let file = open().map_err(|why| ReportError::file("write", &path, &why))?;
-        Ok(Self { path, file })
-    }
-
-    /// Reads all lines and opens for appending. A last line without its end was torn and is cut off; a journal that is
-    /// not there is empty.
-    fn resume<T: DeserializeOwned>(path: PathBuf) -> Result<(Vec<T>, Self), ReportError> {
-        let text = match fs::read(&path) {
-            Err(why) if why.kind() != std::io::ErrorKind::NotFound => {
-                return Err(ReportError::file("read", &path, &why));
-            }
-            text => text.unwrap_or_default(),
-        };
-        let whole = text
-            .iter()
-            .rposition(|b| *b == b'\n')
-            .map_or(0, |at| at + 1);
-        let mut entries = Vec::new();
-        let lines = text[..whole].split(|b| *b == b'\n').zip(1..);
-        for (bytes, line) in lines.filter(|(bytes, _)| !bytes.is_empty()) {
-            entries.push(
-                serde_json::from_slice(bytes).map_err(|why| ReportError::Journal {
-                    path: path.clone(),
-                    line,
-                    why: why.to_string(),
-                })?,
-            );
-        }
-        Ok((entries, Self::open(path, whole as u64)?))
-    }
-
-    /// Appends one line in one write; `sync` waits until it is on the disk.
-    fn append(&mut self, entry: &impl Serialize, sync: bool) -> Result<(), ReportError> {
-        let mut line = serde_json::to_vec(entry).unwrap_or_default();
-        line.push(b'\n');
-        let write = || {
-            (&self.file).write_all(&line)?;
-            if sync { self.file.sync_data() } else { Ok(()) }
-        };
-        write().map_err(|why| ReportError::file("write", &self.path, &why))
-    }
-
-    /// Removes all lines.
-    fn clear(&mut self) -> Result<(), ReportError> {
-        let cut = self.file.set_len(0);
-        cut.map_err(|why| ReportError::file("write", &self.path, &why))
-    }
 }
 
 #[cfg(test)]

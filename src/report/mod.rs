@@ -7,6 +7,7 @@ mod export;
 #[cfg(test)]
 pub(crate) mod fixture;
 mod html;
+mod journal;
 mod markdown;
 mod model;
 pub mod plot;

@@ -6,7 +6,7 @@
 //! its shape; exposure follows from the scene's lights and surfaces, not from the picture, so that it does not flicker
 //! while the eye moves.
 
-use crate::geometry::{Vec3, unit_normal};
+use crate::geometry::{SurfacePoint, Vec3, unit_normal};
 use crate::scene::{Light, Material, Scene};
 
 use super::model::has_highlight;
@@ -26,7 +26,7 @@ pub(super) struct Surface<'a> {
     /// What reflects.
     pub material: &'a Material,
     /// The point.
-    pub position: Vec3,
+    pub point: SurfacePoint,
     /// Unit normal on the side that is seen.
     pub normal: Vec3,
     /// Unit direction to where it is seen from.
@@ -45,7 +45,7 @@ pub(super) struct Incoming {
 /// What a surface sends to the eye by a light; `None` where the light cannot matter: it lies behind the side that is
 /// seen, or the material reflects nothing of it.
 pub(super) fn incoming(surface: &Surface, light: &Light) -> Option<Incoming> {
-    let towards = light.position - surface.position;
+    let towards = light.position - surface.point.position;
     let distance_squared = towards.length_squared();
     let direction = towards.try_normalize()?;
     let cosine = surface.normal.dot(direction);
@@ -166,7 +166,7 @@ mod tests {
     fn surface(material: &Material) -> Surface<'_> {
         Surface {
             material,
-            position: Vec3::ZERO,
+            point: SurfacePoint::of(&[Vec3::ZERO; 3], 0.0, 0.0),
             normal: Vec3::Z,
             to_eye: Vec3::Z,
         }

@@ -24,6 +24,8 @@ mod light;
 mod model;
 mod normal;
 mod render;
+mod scatter;
+mod shadow;
 mod work;
 
 pub use channel::{CHANNELS, Channel, channel};

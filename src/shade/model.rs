@@ -2,6 +2,8 @@
 
 use crate::scene::{Material, Scene};
 
+use super::scatter::{mirrors, transmits};
+
 /// What a scene needs to be coloured.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Model {
@@ -9,8 +11,12 @@ pub(super) struct Model {
     pub lights: usize,
     /// Whether a used material has highlights that a light can cause.
     pub highlights: bool,
-    /// Whether a used material glows by itself.
-    pub glow: bool,
+    /// Used materials that glow by themselves.
+    pub glowing: usize,
+    /// Whether a used material mirrors.
+    pub mirror: bool,
+    /// Whether a used material lets light through.
+    pub glass: bool,
 }
 
 impl Model {
@@ -22,13 +28,17 @@ impl Model {
                 *used = true;
             }
         }
-        let any = |has: fn(&Material) -> bool| {
-            (scene.materials.iter().zip(&used)).any(|(material, &used)| used && has(material))
+        let count = |has: fn(&Material) -> bool| {
+            let used = (scene.materials.iter().zip(&used)).filter(|(_, used)| **used);
+            used.filter(|(material, _)| has(material)).count()
         };
+        let any = |has| count(has) > 0;
         Self {
             lights: scene.lights.len(),
             highlights: !scene.lights.is_empty() && any(has_highlight),
-            glow: any(|material| material.emission.max_element() > 0.0),
+            glowing: count(|material| material.emission.max_element() > 0.0),
+            mirror: any(|material| mirrors(material) && !transmits(material)),
+            glass: any(transmits),
         }
     }
 
@@ -41,9 +51,15 @@ impl Model {
             (1, true) => "Blinn-Phong, 1 light with shadows".to_owned(),
             (n, true) => format!("Blinn-Phong, {n} lights with shadows"),
         };
-        if self.glow {
+        if self.glowing > 0 {
             text.push_str("; glowing surfaces");
         }
+        text.push_str(match (self.mirror, self.glass) {
+            (false, false) => "; no mirror, no glass",
+            (true, false) => "; mirrors, no glass",
+            (false, true) => "; glass, no mirror",
+            (true, true) => "; mirrors, glass",
+        });
         text
     }
 }
@@ -68,7 +84,7 @@ mod tests {
         };
         assert_eq!(
             Model::of(&bare).describe(),
-            "Lambert, head light; no shadows needed"
+            "Lambert, head light; no shadows needed; no mirror, no glass"
         );
     }
 
@@ -85,7 +101,7 @@ mod tests {
         scene.material_of = vec![0];
         assert_eq!(
             Model::of(&scene).describe(),
-            "Lambert, 1 light with shadows"
+            "Lambert, 1 light with shadows; no mirror, no glass"
         );
         scene.material_of = vec![1];
         assert!(Model::of(&scene).describe().starts_with("Blinn-Phong"));

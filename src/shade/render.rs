@@ -57,6 +57,10 @@ pub struct RayCounts {
     pub hits: u64,
     /// From surfaces towards lights.
     pub shadow: u64,
+    /// From mirrors and glass, on the side that is seen.
+    pub reflected: u64,
+    /// Into glass and out of it.
+    pub refracted: u64,
 }
 
 impl AddAssign for RayCounts {
@@ -64,6 +68,8 @@ impl AddAssign for RayCounts {
         self.primary += other.primary;
         self.hits += other.hits;
         self.shadow += other.shadow;
+        self.reflected += other.reflected;
+        self.refracted += other.refracted;
     }
 }
 
@@ -71,7 +77,7 @@ impl RayCounts {
     /// All rays.
     #[must_use]
     pub fn total(&self) -> u64 {
-        self.primary + self.shadow
+        self.primary + self.shadow + self.reflected + self.refracted
     }
 }
 
@@ -80,7 +86,8 @@ impl RayCounts {
 pub struct RenderStats {
     /// Rays that were traced.
     pub rays: RayCounts,
-    /// What the scene was found to need, e.g. `Lambert, head light; no shadows needed; 1.0 rays a pixel`.
+    /// What the scene was found to need, e.g. `Lambert, head light; no shadows needed; no mirror, no glass; 1.0 rays a
+    /// pixel`.
     pub found: String,
 }
 
@@ -352,7 +359,7 @@ mod tests {
         assert_eq!(bare.rays.shadow, 0);
         assert_eq!(
             bare.found,
-            "Lambert, head light; no shadows needed; 1.0 rays a pixel"
+            "Lambert, head light; no shadows needed; no mirror, no glass; 1.0 rays a pixel"
         );
     }
 

@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 pub struct Control {
     stop: AtomicBool,
     paused: AtomicBool,
+    waiting: AtomicBool,
     sampling: AtomicBool,
     disturbances: AtomicU64,
 }
@@ -27,6 +28,14 @@ impl Control {
     /// Whether it was asked to wait.
     pub fn paused(&self) -> bool {
         self.paused.load(Ordering::Relaxed)
+    }
+    /// Whether it waits right now: nothing is built, counted or timed.
+    pub fn waiting(&self) -> bool {
+        self.waiting.load(Ordering::Relaxed)
+    }
+    /// Said by the sweep when it begins and ends to wait.
+    pub fn set_waiting(&self, waiting: bool) {
+        self.waiting.store(waiting, Ordering::Relaxed);
     }
     /// Whether a sample is being timed right now.
     pub fn sampling(&self) -> bool {

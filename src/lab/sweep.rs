@@ -313,8 +313,10 @@ impl Sweep<'_> {
     /// Waits while the sweep is paused; whether it may go on, or is stopped.
     fn may_go_on(&self) -> bool {
         while self.control.paused() && !self.control.stopped() {
+            self.control.set_waiting(true);
             std::thread::sleep(PAUSE);
         }
+        self.control.set_waiting(false);
         !self.control.stopped()
     }
 

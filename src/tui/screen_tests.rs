@@ -1,0 +1,297 @@
+//! Screens drawn on a test backend.
+
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+
+use super::fixture;
+use super::keymap::{self, Place};
+use super::overlay::{Overlay, Pick, Purpose, TextField};
+use super::plan_editor::Field;
+use super::state::{Panel, Screen, State};
+use super::update::{Event, update};
+use super::view::view;
+
+const SIZES: [(u16, u16); 4] = [(60, 18), (80, 24), (120, 40), (200, 60)];
+
+/// The rows of the screen.
+fn screen(state: &State) -> Vec<String> {
+    let (columns, rows) = state.size;
+    let mut terminal = Terminal::new(TestBackend::new(columns, rows)).unwrap();
+    terminal.draw(|frame| view(state, frame)).unwrap();
+    let buffer = terminal.backend().buffer();
+    (0..rows)
+        .map(|y| (0..columns).map(|x| buffer[(x, y)].symbol()).collect())
+        .collect()
+}
+
+fn contains(rows: &[String], text: &str) -> bool {
+    rows.iter().any(|row| row.contains(text))
+}
+
+#[track_caller]
+fn assert_contains(rows: &[String], text: &str) {
+    assert!(contains(rows, text), "no '{text}' in\n{}", rows.join("\n"));
+}
+
+/// States that put each place on top.
+fn states(columns: u16, rows: u16) -> Vec<State> {
+    let idle = || fixture::sized(columns, rows);
+    let mut states = vec![idle(), fixture::running(idle()), fixture::complete(idle())];
+    for screen in [
+        Screen::Preview,
+        Screen::Charts,
+        Screen::Reports,
+        Screen::Help,
+    ] {
+        for base in [idle(), fixture::running(idle()), fixture::complete(idle())] {
+            states.push(State { screen, ..base });
+        }
+    }
+    let over = |overlay: Overlay| {
+        let mut state = fixture::complete(idle());
+        state.overlays.push(overlay);
+        state
+    };
+    let row = fixture::finished().rows[2].clone();
+    states.push(over(Overlay::Pick(Pick::new(&idle().plan, Field::Accels))));
+    states.push(over(Overlay::Text(TextField::new(
+        Purpose::Line(Field::N),
+        "1..128",
+    ))));
+    states.push(over(Overlay::Details(Box::new(row), 0)));
+    states.push(over(Overlay::Quit("A sweep is running.".to_owned())));
+    states
+}
+
+#[test]
+fn every_hint_in_the_footer_is_whole_on_every_screen_and_size() {
+    for (columns, rows) in SIZES {
+        for state in states(columns, rows) {
+            let footer = screen(&state).pop().unwrap();
+            let place = state.place();
+            let mut rest = footer.trim().to_owned();
+            for (key, word) in keymap::hints(place, state.situation()) {
+                let hint = format!("{key} {word}");
+                if let Some(after) = rest.strip_prefix(&hint) {
+                    rest = after.trim_start().to_owned();
+                }
+            }
+            assert_eq!(rest, "", "{place:?} at {columns}x{rows}: {footer}");
+            assert!(footer.trim().len() > 8, "{place:?}: {footer}");
+        }
+    }
+}
+
+#[test]
+fn the_first_key_and_the_ways_out_are_always_in_the_footer() {
+    for (columns, rows) in SIZES {
+        for state in states(columns, rows) {
+            let place = state.place();
+            let footer = screen(&state).pop().unwrap();
+            let first = keymap::hints(place, state.situation()).next().unwrap();
+            assert!(
+                footer.contains(&format!("{} {}", first.0, first.1)),
+                "{footer}"
+            );
+            if !matches!(
+                place,
+                Place::Pick | Place::Text | Place::Details | Place::Confirm
+            ) {
+                for hint in ["Tab screen", "? help", "q quit"] {
+                    assert!(footer.contains(hint), "{place:?} at {columns}: {footer}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_first_screen_says_what_is_there_and_what_to_press() {
+    for (columns, rows) in [(80, 24), (120, 40), (200, 60)] {
+        let rows = screen(&fixture::sized(columns, rows));
+        for text in [
+            "1 Sweep",
+            "2 Preview",
+            "3 Charts",
+            "4 Reports",
+            "5 Help",
+            "Enter runs it",
+            "Press Enter to run",
+            "scenes",
+            "teapot",
+            "accelerators",
+            "grid n",
+            "kernels",
+            "rays",
+            "threads",
+            "Ready:",
+            "Enter run",
+        ] {
+            assert_contains(&rows, text);
+        }
+    }
+}
+
+#[test]
+fn a_running_sweep_shows_progress_figures_table_and_chart() {
+    for (columns, rows) in [(80, 24), (120, 40), (200, 60)] {
+        let rows = screen(&fixture::running(fixture::sized(columns, rows)));
+        for text in [
+            "running",
+            "of 7 runs",
+            "about",
+            "left",
+            "now grid n=32",
+            "cells/ray",
+            "tests/ray",
+            "Mrays/s",
+            "runs · teapot · woop · primary rays · 1 thread",
+            "speed over n",
+            "grid",
+            "brute",
+            "p pause",
+            "x stop",
+        ] {
+            assert_contains(&rows, text);
+        }
+    }
+}
+
+#[test]
+fn a_complete_sweep_names_its_report_and_the_failed_run() {
+    let rows = screen(&fixture::complete(fixture::sized(120, 40)));
+    assert_contains(&rows, "complete in");
+    assert_contains(&rows, "1 failed");
+    assert_contains(&rows, "failed");
+    assert_contains(&rows, "results/2026-11-22-teapot");
+}
+
+#[test]
+fn charts_show_every_line_with_marker_and_name() {
+    for (columns, rows) in SIZES {
+        let mut state = fixture::complete(fixture::sized(columns, rows));
+        state.screen = Screen::Charts;
+        let rows = screen(&state);
+        for text in ["● brute", "■ grid", "▲ bvh", "speed (Mrays/s)", "128", "◂"] {
+            assert_contains(&rows, text);
+        }
+        assert!(
+            rows.iter()
+                .any(|r| r.chars().any(|c| ('\u{2801}'..'\u{28ff}').contains(&c)))
+        );
+    }
+}
+
+#[test]
+fn a_large_terminal_shows_other_quantities_too() {
+    let mut state = fixture::complete(fixture::sized(200, 60));
+    state.screen = Screen::Charts;
+    let rows = screen(&state);
+    for text in [
+        "speed (Mrays/s) over n",
+        "steps per ray over n",
+        "tests per ray over n",
+        "build time",
+        "memory",
+    ] {
+        assert_contains(&rows, text);
+    }
+}
+
+#[test]
+fn the_preview_names_the_key_beside_each_choice() {
+    for (columns, rows) in SIZES {
+        let mut state = fixture::sized(columns, rows);
+        state.screen = Screen::Preview;
+        let rows = screen(&state);
+        for text in [
+            "scene",
+            "accelerator",
+            "grid n",
+            "kernel",
+            "channel",
+            "tests/ray",
+            "build",
+        ] {
+            assert_contains(&rows, text);
+        }
+    }
+}
+
+#[test]
+fn reports_and_help_say_where_to_go_when_there_is_nothing() {
+    let mut state = fixture::sized(80, 24);
+    state.screen = Screen::Reports;
+    update(&mut state, Event::Listed(Ok(Vec::new())));
+    assert_contains(&screen(&state), "No report yet. Screen 1 (press 1)");
+    state.screen = Screen::Charts;
+    assert_contains(&screen(&state), "Nothing to chart yet. Screen 1 (press 1)");
+    state.screen = Screen::Help;
+    assert_contains(&screen(&state), "Everywhere");
+}
+
+#[test]
+fn a_bad_line_of_the_plan_says_so_in_the_line() {
+    let mut state = fixture::sized(80, 24);
+    state.plan.set(Field::Accels, "gird");
+    let rows = screen(&state);
+    assert_contains(&rows, "! unknown accelerator 'gird'");
+    assert_contains(&rows, "marked with !");
+}
+
+#[test]
+fn a_terminal_that_is_too_small_gets_one_sentence() {
+    for size in [(1, 1), (10, 3), (59, 30), (80, 17)] {
+        let rows = screen(&fixture::sized(size.0, size.1));
+        assert!(!contains(&rows, "Sweep"));
+    }
+    let rows = screen(&fixture::sized(59, 17));
+    assert_contains(&rows, "raylab needs 60x18");
+}
+
+#[test]
+fn nothing_panics_at_any_size() {
+    for columns in [1, 2, 59, 60, 61, 79, 109, 110, 131] {
+        for rows in [1, 2, 17, 18, 19, 25, 34, 35] {
+            for state in states(columns, rows) {
+                screen(&state);
+                screen(&State {
+                    expanded: true,
+                    ..state
+                });
+            }
+        }
+    }
+}
+
+#[test]
+fn an_expanded_panel_has_the_whole_body() {
+    let mut state = fixture::running(fixture::sized(80, 24));
+    state.expanded = true;
+    let rows = screen(&state);
+    assert!(!contains(&rows, "speed over n"));
+    assert_contains(
+        &rows,
+        "kernel itself"
+            .split(' ')
+            .next()
+            .unwrap_or_default()
+            .get(..0)
+            .unwrap_or_default(),
+    );
+    for run in ["brute", "bvh", "1024"] {
+        assert_contains(&rows, run);
+    }
+    state.panel = Panel::Plan;
+    assert!(!contains(&screen(&state), "runs ·"));
+}
+
+/// Prints every screen; for looking at, with `--nocapture`.
+#[test]
+fn screens_can_be_drawn_one_after_the_other() {
+    for (columns, rows) in [(80, 24), (120, 40)] {
+        for state in states(columns, rows) {
+            println!("{}", screen(&state).join("\n"));
+        }
+    }
+}

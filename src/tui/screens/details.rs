@@ -1,0 +1,134 @@
+//! Everything known of one run.
+
+use ratatui::layout::Rect;
+use ratatui::text::Line;
+
+use crate::lab::Spread;
+use crate::tui::layout;
+use crate::tui::overlay::Overlay;
+use crate::tui::runs::{RunRow, Status, figure, mebibytes};
+use crate::tui::state::State;
+use crate::tui::theme::{Role, Theme};
+use crate::tui::view::wrapped;
+
+/// The greatest first line that still fills the box.
+#[must_use]
+pub fn last_line(state: &State) -> usize {
+    let Some(overlay @ Overlay::Details(row, _)) = state.overlays.last() else {
+        return 0;
+    };
+    let (width, height) = state.size;
+    let body = layout::parts(Rect::new(0, 0, width, height)).body;
+    let area = layout::overlay(overlay, body);
+    text(state.theme, row, (area.width as usize).saturating_sub(2))
+        .len()
+        .saturating_sub((area.height as usize).saturating_sub(2))
+}
+
+/// The lines of the box.
+#[must_use]
+pub fn text(theme: Theme, row: &RunRow, width: usize) -> Vec<Line<'static>> {
+    let run = &row.run;
+    let mut lines = Vec::new();
+    let mut put = |name: &str, value: String| {
+        let mut name = name.to_owned();
+        for part in wrapped(&value, width.saturating_sub(17)) {
+            lines.push(Line::from(format!(" {name:<15}{part}")));
+            name.clear();
+        }
+    };
+    put(
+        "scene",
+        match run.triangles {
+            0 => run.scene.clone(),
+            n => format!("{}, {n} triangles", run.scene),
+        },
+    );
+    put("accelerator", row.accel.clone());
+    put("grid n", row.n_text());
+    put("kernel", row.kernel.clone());
+    put("rays", format!("{} {}", run.ray_count, run.rays));
+    put("threads", run.threads.to_string());
+    put(
+        "status",
+        match &row.status {
+            Status::Failed(why) => format!("failed: {why}"),
+            other => other.symbol().1.to_owned(),
+        },
+    );
+    let speed = &run.mrays_per_s;
+    if row.mrays_per_s().is_some() {
+        put(
+            "speed",
+            format!(
+                "{} Mrays/s, 95 % {} to {}, {} samples",
+                figure(speed.median),
+                figure(speed.lo),
+                figure(speed.hi),
+                speed.samples.len()
+            ),
+        );
+    }
+    if row.is_built() {
+        put("build", format!("{} ms", figure(run.build_ms.median)));
+        put(
+            "memory",
+            format!("{} MiB", figure(mebibytes(run.memory_bytes))),
+        );
+        let s = &run.structure;
+        put(
+            "structure",
+            format!(
+                "{} cells or nodes, {} empty, {} references, depth {}, longest list {}",
+                s.cells, s.empty_cells, s.references, s.depth, s.longest_list
+            ),
+        );
+        let work = &run.per_ray;
+        put("cells a ray", spread(&work.steps));
+        put("  empty", spread(&work.empty_steps));
+        put("tests a ray", spread(&work.tests));
+        put("  duplicate", spread(&work.duplicate_tests));
+        if let Some(p) = &run.predicted {
+            put(
+                "predicted",
+                format!(
+                    "best n {} ({} to {} as good), {} cells and {} tests a random line",
+                    p.n,
+                    p.plateau[0],
+                    p.plateau[1],
+                    figure(p.steps),
+                    figure(p.tests)
+                ),
+            );
+        }
+        let verdict = if run.valid { "right" } else { "WRONG" };
+        put(
+            "answers",
+            format!(
+                "{verdict}: {} rays checked against brute force, {} where the kernel itself errs",
+                run.checked_rays, run.kernel_errors
+            ),
+        );
+        put("hits", run.checksum.hits.to_string());
+    }
+    for warning in &run.warnings {
+        put("note", warning.clone());
+    }
+    put("id", run.id.clone());
+    for line in &mut lines {
+        if line.to_string().contains("WRONG") || line.to_string().contains("failed:") {
+            *line = line.clone().style(theme.style(Role::Bad));
+        }
+    }
+    lines
+}
+
+fn spread(s: &Spread) -> String {
+    format!(
+        "mean {}, median {}, 99 % {}, most {}",
+        figure(s.mean),
+        s.p50,
+        s.p99,
+        s.max
+    )
+}

@@ -1,0 +1,27 @@
+//! The screens, one file each, and what several of them draw.
+
+use ratatui::Frame;
+use ratatui::layout::Rect;
+
+use super::state::{Screen, State};
+
+pub mod chart;
+pub mod charts;
+pub mod details;
+pub mod help;
+pub mod overlays;
+pub mod preview;
+pub mod reports;
+pub mod sweep;
+pub mod table;
+
+/// Draws the body of the screen that is shown.
+pub fn body(state: &State, frame: &mut Frame, area: Rect) {
+    match state.screen {
+        Screen::Sweep => sweep::draw(state, frame, area),
+        Screen::Preview => preview::draw(state, frame, area),
+        Screen::Charts => charts::draw(state, frame, area),
+        Screen::Reports => reports::draw(state, frame, area),
+        Screen::Help => help::draw(state, frame, area),
+    }
+}

@@ -1,0 +1,179 @@
+//! The preview screen: the scene as it is rendered through a structure, and what that structure costs.
+
+use ratatui::Frame;
+use ratatui::layout::Rect;
+use ratatui::text::{Line, Span};
+
+use crate::lab::NRule;
+use crate::preview::{Picture, legend_bar};
+use crate::tui::layout;
+use crate::tui::picture::{Figures, Wish};
+use crate::tui::plan_editor::{accel_label, kernel_label};
+use crate::tui::runs::{figure, mebibytes};
+use crate::tui::state::State;
+use crate::tui::theme::Role;
+use crate::tui::view::{clipped, panel, wrapped};
+
+/// Draws the screen.
+pub fn draw(state: &State, frame: &mut Frame, area: Rect) {
+    let (framed, side) = layout::preview(state, area);
+    picture(state, frame, framed, true);
+    if !side.is_empty() {
+        figures(state, frame, side);
+    }
+}
+
+/// The picture in a frame that says what it shows, and what it waits for.
+pub fn picture(state: &State, frame: &mut Frame, area: Rect, focused: bool) {
+    let picture = &state.picture;
+    let wish = &picture.wish;
+    let title = clipped(
+        &format!("{} · {}", wish.scene, wish.channel.name),
+        (area.width as usize).saturating_sub(6),
+    );
+    let mut block = panel(state.theme, title, focused);
+    if !picture.doing.is_empty() {
+        let text = clipped(
+            &format!(" {} ", picture.doing),
+            (area.width as usize).saturating_sub(4),
+        );
+        block = block.title_bottom(Line::from(text).right_aligned());
+    }
+    let inner = block.inner(area);
+    frame.render_widget(block, area);
+    if let Some(why) = &picture.error {
+        return super::sweep::lines(state.theme, &format!("No picture: {why}"), frame, inner);
+    }
+    let Some(shown) = &picture.shown else {
+        let text = format!("{} comes in a moment.", wish.scene);
+        return super::sweep::lines(state.theme, &text, frame, inner);
+    };
+    frame.render_widget(Picture::new(&shown.cells), inner);
+}
+
+fn figures(state: &State, frame: &mut Frame, area: Rect) {
+    let block = panel(state.theme, "through this structure", false);
+    let inner = block.inner(area);
+    frame.render_widget(block, area);
+    let width = inner.width as usize;
+    let quiet = state.theme.style(Role::Quiet);
+    let rows = choices(&state.picture.wish).into_iter().chain(measured(
+        &state.picture.wish,
+        state.picture.current_figures(),
+    ));
+    let lines: Vec<Line> = rows
+        .map(|(name, value, key)| {
+            let room = width.saturating_sub(13 + key.chars().count());
+            Line::from(vec![
+                Span::styled(format!(" {name:<12}"), quiet),
+                Span::raw(format!("{:<room$}", clipped(&value, room))),
+                Span::styled(key, state.theme.style(Role::Key)),
+            ])
+        })
+        .collect();
+    for (y, line) in lines.iter().take(inner.height as usize).enumerate() {
+        frame.render_widget(line, Rect::new(inner.x, inner.y + y as u16, inner.width, 1));
+    }
+    let used = (lines.len() as u16 + 1).min(inner.height);
+    let rest = Rect::new(
+        inner.x + 1,
+        inner.y + used,
+        inner.width - 1,
+        inner.height - used,
+    );
+    meaning(state, frame, rest);
+}
+
+/// What the colours of the picture mean, or what the scene was found to need.
+fn meaning(state: &State, frame: &mut Frame, area: Rect) {
+    let picture = &state.picture;
+    let Some(shown) = picture
+        .shown
+        .as_ref()
+        .filter(|s| s.request.wish == picture.wish)
+    else {
+        return;
+    };
+    let quiet = state.theme.style(Role::Quiet);
+    let mut lines: Vec<Line> = Vec::new();
+    let bar_at = shown.legend.as_ref().map(|legend| {
+        let title = wrapped(legend.title, area.width as usize);
+        lines.extend(title.into_iter().map(Line::from));
+        let at = lines.len() as u16;
+        lines.push(Line::default());
+        let [_, median, _] = legend.labels();
+        lines.push(Line::styled(
+            format!("median {median}, {}", legend.scale),
+            quiet,
+        ));
+        at
+    });
+    if bar_at.is_none() {
+        let found = wrapped(&shown.found, area.width as usize);
+        lines.extend(found.into_iter().map(|line| Line::styled(line, quiet)));
+    }
+    for (y, line) in lines.into_iter().take(area.height as usize).enumerate() {
+        frame.render_widget(line, Rect::new(area.x, area.y + y as u16, area.width, 1));
+    }
+    if let (Some(at), Some(legend)) = (bar_at, &shown.legend)
+        && at < area.height
+    {
+        let bar = legend_bar(legend, area.width, state.theme.mode());
+        let row = Rect::new(area.x, area.y + at, area.width, 1);
+        frame.render_widget(Picture::new(&bar), row);
+    }
+}
+
+/// What was chosen, and the key that changes it.
+fn choices(wish: &Wish) -> Vec<(&'static str, String, &'static str)> {
+    let n = match (wish.has_n(), wish.n) {
+        (false, _) => "-".to_owned(),
+        (true, NRule::Auto) => "auto".to_owned(),
+        (true, NRule::Fixed(n)) => n.to_string(),
+    };
+    vec![
+        ("scene", wish.scene.clone(), " [ ]"),
+        ("accelerator", accel_label(&wish.accel), " a"),
+        ("grid n", n, " n N"),
+        ("kernel", kernel_label(&wish.kernel), " m"),
+        ("channel", wish.channel.name.to_owned(), " c"),
+        ("symbols", wish.symbols.name.to_owned(), " b"),
+    ]
+}
+
+/// What the structure costs; `...` until it is known.
+fn measured(wish: &Wish, figures: Option<&Figures>) -> Vec<(&'static str, String, &'static str)> {
+    let value = |of: fn(&Figures) -> String| figures.map_or_else(|| "...".to_owned(), of);
+    let mut rows = vec![
+        ("", String::new(), ""),
+        ("triangles", value(|f| f.triangles.to_string()), ""),
+    ];
+    if wish.has_n() {
+        rows.push((
+            "built n",
+            value(|f| f.n.map_or_else(|| "-".to_owned(), |n| n.to_string())),
+            "",
+        ));
+    }
+    rows.extend([
+        ("build", value(|f| format!("{} ms", figure(f.build_ms))), ""),
+        (
+            "memory",
+            value(|f| format!("{} MiB", figure(mebibytes(f.memory_bytes)))),
+            "",
+        ),
+        (
+            "speed",
+            value(|f| format!("{} Mrays/s", figure(f.mrays_per_s))),
+            "",
+        ),
+        ("cells/ray", value(|f| figure(f.steps)), ""),
+        ("tests/ray", value(|f| figure(f.tests)), ""),
+        (
+            "rays hit",
+            value(|f| format!("{:.0} %", f.hit_share * 100.0)),
+            "",
+        ),
+    ]);
+    rows
+}

@@ -1,0 +1,383 @@
+//! Everything the screen depends on. Views read it, [`update`](super::update::update) changes it, and nothing else does.
+
+use std::path::PathBuf;
+
+use super::keymap::{Place, Situation};
+use super::overlay::Overlay;
+use super::picture::{Picture, Wish};
+use super::plan_editor::PlanEditor;
+use super::runs::{Runs, TableView};
+use super::theme::Theme;
+use crate::lab::{self, Plan};
+use crate::preview::ColorMode;
+use crate::report::Report;
+use crate::report::series::Quantity;
+
+/// A screen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Screen {
+    /// Edit the plan, run it, watch.
+    Sweep,
+    /// The scene, live.
+    Preview,
+    /// Curves over n.
+    Charts,
+    /// Bundles on disk.
+    Reports,
+    /// All keys.
+    Help,
+}
+
+impl Screen {
+    /// All screens; the key of a screen is its place here, from 1.
+    pub const ALL: [Self; 5] = [
+        Self::Sweep,
+        Self::Preview,
+        Self::Charts,
+        Self::Reports,
+        Self::Help,
+    ];
+
+    /// Its name.
+    #[must_use]
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Sweep => "Sweep",
+            Self::Preview => "Preview",
+            Self::Charts => "Charts",
+            Self::Reports => "Reports",
+            Self::Help => "Help",
+        }
+    }
+
+    /// The screen `steps` further round.
+    #[must_use]
+    pub fn turned(self, steps: isize) -> Self {
+        let at = Self::ALL.iter().position(|&s| s == self).unwrap_or(0) as isize;
+        Self::ALL[(at + steps).rem_euclid(Self::ALL.len() as isize) as usize]
+    }
+}
+
+/// Which panel of the sweep screen has the keys.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Panel {
+    /// The plan.
+    Plan,
+    /// The table of runs.
+    Runs,
+}
+
+/// Where the sweep stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Phase {
+    /// Nothing has been run yet.
+    Idle,
+    /// It runs.
+    Running,
+    /// It waits before the next sample.
+    Paused,
+    /// It was asked to stop and ends its sample.
+    Stopping,
+    /// All runs are made.
+    Complete,
+    /// It was stopped.
+    Stopped,
+}
+
+/// The sweep.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sweep {
+    /// Where it stands.
+    pub phase: Phase,
+    /// Its runs.
+    pub runs: Runs,
+    /// Share that is done, 0 to 1.
+    pub done: f64,
+    /// Estimated seconds to the end, once known.
+    pub seconds_left: Option<f64>,
+    /// When it began, by [`State::clock`].
+    pub began: f64,
+    /// When it ended.
+    pub ended: Option<f64>,
+    /// The bundle that it is written to.
+    pub bundle: Option<PathBuf>,
+    /// Whether its report and plots are being written.
+    pub writing: bool,
+    /// Why what was measured is not all on disk.
+    pub unsaved: Option<String>,
+}
+
+impl Sweep {
+    fn idle() -> Self {
+        Self {
+            phase: Phase::Idle,
+            runs: Runs::default(),
+            done: 0.0,
+            seconds_left: None,
+            began: 0.0,
+            ended: None,
+            bundle: None,
+            writing: false,
+            unsaved: None,
+        }
+    }
+
+    /// A sweep that begins now.
+    #[must_use]
+    pub fn beginning(clock: f64) -> Self {
+        Self {
+            phase: Phase::Running,
+            began: clock,
+            ..Self::idle()
+        }
+    }
+
+    /// Whether a sweep is under way, paused ones included.
+    #[must_use]
+    pub fn is_running(&self) -> bool {
+        matches!(self.phase, Phase::Running | Phase::Paused | Phase::Stopping)
+    }
+}
+
+/// Where charts take their runs from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Source {
+    /// The sweep of this session.
+    Live,
+    /// The opened report.
+    Opened,
+}
+
+/// A line of the charts screen that can be changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ChartLine {
+    /// What is charted.
+    Quantity,
+    /// Which scene, kernel, rays and threads.
+    Panel,
+    /// Sweep or report.
+    Source,
+}
+
+impl ChartLine {
+    /// From top to bottom.
+    pub const ALL: [Self; 3] = [Self::Quantity, Self::Panel, Self::Source];
+}
+
+/// The charts screen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Charts {
+    /// What is charted large.
+    pub quantity: Quantity,
+    /// Which of the panels.
+    pub panel: usize,
+    /// Where the runs come from.
+    pub source: Source,
+    /// The marked line.
+    pub marked: ChartLine,
+}
+
+/// A bundle in the results directory.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct BundleRow {
+    /// Its directory.
+    pub path: PathBuf,
+    /// Its name: the directory's.
+    pub name: String,
+    /// Start, RFC 3339; empty where unknown.
+    pub date: String,
+    /// Runs in the report or, where there is none yet, in the journal.
+    pub runs: usize,
+    /// What a reader should know, e.g. that the sweep was not finished.
+    pub note: String,
+}
+
+/// An opened report.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Opened {
+    /// The name of its bundle.
+    pub name: String,
+    /// The report.
+    pub report: Report,
+    /// Its runs.
+    pub runs: Runs,
+    /// How their table is looked at.
+    pub table: TableView,
+}
+
+impl Opened {
+    /// A report that was read from the bundle `name`.
+    #[must_use]
+    pub fn new(name: String, report: Report) -> Self {
+        Self {
+            name,
+            runs: Runs::reported(&report.runs),
+            report,
+            table: TableView::default(),
+        }
+    }
+}
+
+/// The reports screen.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Reports {
+    /// Bundles, newest first; `None` until the directory was read.
+    pub bundles: Option<Vec<BundleRow>>,
+    /// Why they could not be listed.
+    pub error: Option<String>,
+    /// Only bundles that contain this.
+    pub filter: String,
+    /// The marked line among those shown.
+    pub marked: usize,
+    /// The opened report; the keys go to its table while it is shown.
+    pub opened: Option<Opened>,
+}
+
+impl Reports {
+    /// The bundles that are shown.
+    pub fn shown(&self) -> impl Iterator<Item = &BundleRow> {
+        let filter = self.filter.to_lowercase();
+        self.bundles
+            .iter()
+            .flatten()
+            .filter(move |b| b.name.to_lowercase().contains(&filter))
+    }
+}
+
+/// A sentence above the footer.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Notice {
+    /// What happened.
+    pub text: String,
+    /// Whether it is bad news.
+    pub bad: bool,
+}
+
+/// The state of the TUI.
+#[derive(Debug, Clone)]
+pub struct State {
+    /// The screen that is shown.
+    pub screen: Screen,
+    /// The screen that was shown before help.
+    pub before_help: Screen,
+    /// Columns and rows of the terminal.
+    pub size: (u16, u16),
+    /// Seconds since the start.
+    pub clock: f64,
+    /// Colours.
+    pub theme: Theme,
+    /// The plan.
+    pub plan: PlanEditor,
+    /// The sweep.
+    pub sweep: Sweep,
+    /// Which panel of the sweep screen has the keys.
+    pub panel: Panel,
+    /// How the table of runs is looked at.
+    pub table: TableView,
+    /// Whether the focused panel has the whole screen.
+    pub expanded: bool,
+    /// Whether the display is held still.
+    pub frozen: bool,
+    /// What the sweep told meanwhile.
+    pub held: Vec<lab::Event>,
+    /// What lies over the screen, topmost last.
+    pub overlays: Vec<Overlay>,
+    /// The picture.
+    pub picture: Picture,
+    /// The charts screen.
+    pub charts: Charts,
+    /// The reports screen.
+    pub reports: Reports,
+    /// First line of help that is shown.
+    pub help_line: usize,
+    /// A sentence above the footer.
+    pub notice: Option<Notice>,
+    /// Where bundles are written.
+    pub results: PathBuf,
+    /// Whether the program is to end.
+    pub quitting: bool,
+}
+
+impl State {
+    /// The state at the start: the plan ready to run, the picture of its first scene wished for.
+    #[must_use]
+    pub fn new(plan: &Plan, results: PathBuf, colors: ColorMode, size: (u16, u16)) -> Self {
+        Self {
+            screen: Screen::Sweep,
+            before_help: Screen::Sweep,
+            size,
+            clock: 0.0,
+            theme: Theme::new(colors),
+            picture: Picture::new(Wish::first(plan)),
+            plan: PlanEditor::new(plan),
+            sweep: Sweep::idle(),
+            panel: Panel::Plan,
+            table: TableView::default(),
+            expanded: false,
+            frozen: false,
+            held: Vec::new(),
+            overlays: Vec::new(),
+            charts: Charts {
+                quantity: Quantity::Speed,
+                panel: 0,
+                source: Source::Live,
+                marked: ChartLine::Quantity,
+            },
+            reports: Reports::default(),
+            help_line: 0,
+            notice: None,
+            results,
+            quitting: false,
+        }
+    }
+
+    /// Where the next key goes.
+    #[must_use]
+    pub fn place(&self) -> Place {
+        if let Some(overlay) = self.overlays.last() {
+            return overlay.place();
+        }
+        match (self.screen, self.panel) {
+            (Screen::Sweep, Panel::Plan) => Place::Plan,
+            (Screen::Sweep, Panel::Runs) => Place::Runs,
+            (Screen::Preview, _) => Place::Preview,
+            (Screen::Charts, _) => Place::Charts,
+            (Screen::Reports, _) => Place::Reports,
+            (Screen::Help, _) => Place::Help,
+        }
+    }
+
+    /// What hints depend on.
+    #[must_use]
+    pub fn situation(&self) -> Situation {
+        Situation {
+            running: self.sweep.is_running(),
+            measured: !self.sweep.runs.rows.is_empty(),
+        }
+    }
+
+    /// The runs that charts show.
+    #[must_use]
+    pub fn charted(&self) -> &Runs {
+        match (&self.charts.source, &self.reports.opened) {
+            (Source::Opened, Some(opened)) => &opened.runs,
+            _ => &self.sweep.runs,
+        }
+    }
+
+    /// Puts a sentence above the footer.
+    pub fn say(&mut self, text: impl Into<String>) {
+        self.notice = Some(Notice {
+            text: text.into(),
+            bad: false,
+        });
+    }
+
+    /// Puts bad news above the footer.
+    pub fn warn(&mut self, text: impl Into<String>) {
+        self.notice = Some(Notice {
+            text: text.into(),
+            bad: true,
+        });
+    }
+}

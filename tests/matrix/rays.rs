@@ -78,24 +78,13 @@ impl Dice {
     }
 }
 
-/// Kinds of rays that [`ray`] makes, …
+/// Kinds of rays that [`ray`] makes.
 const KINDS: u32 = 14;
-
-/// … and those of them that run in the plane of a triangle.
-const IN_PLANE: [u32; 2] = [6, 7];
-
-/// A ray, and whether it runs in the plane of a triangle as far as `f32` can say: then a kernel's determinant may be
-/// nothing but a rounding error, and its hits anywhere.
-#[derive(Clone, Copy)]
-pub struct Aimed {
-    pub ray: Ray,
-    pub in_plane: bool,
-}
 
 /// About `count` valid rays at `mesh`: across it and from inside it; along axes with zeros of both signs; aimed at
 /// vertices, edges and insides of triangles; along edges and in the planes of triangles; from triangles; from and along
 /// the faces of cells, and through their corners. Some have short intervals, some run backwards from `t = 0`.
-pub fn aimed_at(mesh: &Mesh, count: u32, seed: u64) -> Vec<Aimed> {
+pub fn aimed_at(mesh: &Mesh, count: u32, seed: u64) -> Vec<Ray> {
     let mut dice = Dice::new(seed);
     let bounds = if mesh.is_empty() {
         Aabb::of_points([-Vec3::ONE, Vec3::ONE])
@@ -103,11 +92,8 @@ pub fn aimed_at(mesh: &Mesh, count: u32, seed: u64) -> Vec<Aimed> {
         mesh.bounds()
     };
     (0..count)
-        .map(|i| Aimed {
-            ray: ray(&mut dice, mesh, bounds, i % KINDS),
-            in_plane: IN_PLANE.contains(&(i % KINDS)),
-        })
-        .filter(|aimed| aimed.ray.is_valid())
+        .map(|i| ray(&mut dice, mesh, bounds, i % KINDS))
+        .filter(Ray::is_valid)
         .collect()
 }
 

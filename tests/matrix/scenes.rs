@@ -17,6 +17,9 @@ const FEW: &[u32] = &[1, 8];
 /// The finest: only for tiny meshes, as the cells take half a gigabyte.
 const FINEST: &[u32] = &[1, 512];
 
+/// Resolutions of the random soups, one row a soup.
+const ANY: [&[u32]; 6] = [&[2, 23], &[3, 31], &[6, 13], &[7, 40], &[9, 19], &[11, 64]];
+
 type Triangles = Vec<[Vec3; 3]>;
 
 /// All scenes.
@@ -34,7 +37,11 @@ pub fn all() -> Vec<Setting> {
     ]
     .into_iter()
     .map(|(name, triangles)| Setting::new(name, mesh(&triangles), true, FINEST));
-    examples.chain(own).chain(finest).collect()
+    let random = (0..).zip(ANY).map(|(seed, resolutions)| {
+        let name = format!("random-soup-{seed}");
+        Setting::new(&name, mesh(&stretched_soup(seed)), true, resolutions)
+    });
+    examples.chain(own).chain(random).chain(finest).collect()
 }
 
 /// A mesh of triangles given by corners.
@@ -62,6 +69,20 @@ fn soup(count: u32, size: f32, seed: u64) -> Triangles {
             let centre = dice.vector();
             [0; 3].map(|_| centre + size * dice.vector())
         })
+        .collect()
+}
+
+/// A soup of random number and size of triangles, moved and stretched along each axis.
+fn stretched_soup(seed: u64) -> Triangles {
+    let mut dice = Dice::new(100 + seed);
+    let (count, size) = (1 + dice.below(400), dice.signed().abs().powi(3));
+    let (stretch, by) = (
+        dice.vector() * dice.of(&[0.1, 1.0, 30.0]),
+        dice.vector() * 5.0,
+    );
+    soup(count, size, seed)
+        .into_iter()
+        .map(|t| t.map(|p| p * stretch + by))
         .collect()
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock};
 
 use raylab::accel::{self, Accelerator};
-use raylab::geometry::{Hit, Ray};
+use raylab::geometry::{DVec3, Hit, Ray, Vec3, gamma};
 use raylab::oracle::{self, Oracle};
 use raylab::registry::Choice;
 use raylab::scene::Mesh;
@@ -22,7 +22,7 @@ pub struct Setting {
     pub ordinary: bool,
     /// Values of n beside the predicted one.
     pub resolutions: &'static [u32],
-    rays: OnceLock<(Vec<Ray>, Vec<bool>)>,
+    rays: OnceLock<Vec<Ray>>,
     oracle: OnceLock<Oracle>,
     brute: Mutex<BTreeMap<String, Arc<Answers>>>,
 }
@@ -48,20 +48,26 @@ impl Setting {
 
     /// The rays, fewer where the scene has many triangles.
     pub fn rays(&self) -> &[Ray] {
-        &self.aimed().0
-    }
-
-    /// Whether a ray runs in the plane of a triangle.
-    pub fn in_plane(&self, ray: usize) -> bool {
-        self.aimed().1[ray]
-    }
-
-    fn aimed(&self) -> &(Vec<Ray>, Vec<bool>) {
         self.rays.get_or_init(|| {
             let count = (TESTS / self.mesh.len().max(1)).clamp(300, 1400);
-            let aimed = rays::aimed_at(&self.mesh, count as u32, 1);
-            aimed.iter().map(|a| (a.ray, a.in_plane)).unzip()
+            rays::aimed_at(&self.mesh, count as u32, 1)
         })
+    }
+
+    /// Whether `ray` runs in the plane of the triangle that `hit` names as far as `f32` can say: then a kernel's
+    /// determinant is nothing but a rounding error, and its hit may be anywhere.
+    pub fn in_plane(&self, ray: &Ray, hit: &Hit) -> bool {
+        if !hit.is_hit() {
+            return false;
+        }
+        let [a, b, c] = self.mesh.corners(hit.prim).map(Vec3::as_dvec3);
+        let (e1, e2, dir) = (b - a, c - a, ray.dir.as_dvec3());
+        let products = dir.abs().dot(DVec3::new(
+            (e1.y * e2.z).abs() + (e1.z * e2.y).abs(),
+            (e1.z * e2.x).abs() + (e1.x * e2.z).abs(),
+            (e1.x * e2.y).abs() + (e1.y * e2.x).abs(),
+        ));
+        dir.dot(e1.cross(e2)).abs() <= f64::from(gamma(8)) * products
     }
 
     /// Whether `kernel` finds anything among the triangles that `ray` really hits.

@@ -63,13 +63,11 @@ impl Sizes {
             None if param.default.is_empty() => Ok(None),
             None => number(param, param.default).map(Some),
         };
-        Ok(Self(
-            row.params
-                .iter()
-                .enumerate()
-                .map(read)
-                .collect::<Result<_, _>>()?,
-        ))
+        let sizes: Result<_, ChoiceError> = row.params.iter().enumerate().map(read).collect();
+        sizes.map(Self).map_err(|error| SceneError::Size {
+            spec: spec.to_owned(),
+            error,
+        })
     }
 
     /// Sizes as a test wants them.
@@ -286,6 +284,7 @@ mod tests {
         ] {
             let error = check(spec).unwrap_err();
             assert!(error.is_usage(), "{spec}: {error}");
+            assert!(error.to_string().contains(spec), "{error}");
         }
     }
 

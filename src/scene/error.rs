@@ -12,9 +12,17 @@ use crate::registry::ChoiceError;
 /// Two kinds: what was *written* is wrong ([`SceneError::is_usage`]), or the *file* it names is.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum SceneError {
-    /// No scene of that name, or a size that its family does not take.
+    /// No scene of that name.
     #[error(transparent)]
     Choice(#[from] ChoiceError),
+    /// A size that the family does not take.
+    #[error("in '{spec}': {error}")]
+    Size {
+        /// What was written.
+        spec: String,
+        /// What is wrong with it.
+        error: ChoiceError,
+    },
     /// More sizes than the family takes.
     #[error("'{spec}' has too many sizes; write {form}")]
     TooManySizes {
@@ -72,7 +80,7 @@ impl SceneError {
     pub fn is_usage(&self) -> bool {
         matches!(
             self,
-            Self::Choice(_) | Self::TooManySizes { .. } | Self::TooLarge { .. }
+            Self::Choice(_) | Self::Size { .. } | Self::TooManySizes { .. } | Self::TooLarge { .. }
         )
     }
 }

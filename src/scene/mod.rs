@@ -73,7 +73,7 @@ impl Default for Material {
 pub struct Light {
     /// Where it is.
     pub position: Vec3,
-    /// Radiant intensity, linear RGB; falls off with the square of the distance over `reach`.
+    /// Radiant intensity, linear RGB: at distance d a surface that faces the light receives `intensity` / d².
     pub intensity: Vec3,
 }
 

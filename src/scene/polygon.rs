@@ -308,6 +308,23 @@ mod tests {
     }
 
     #[test]
+    fn a_strip_that_crosses_itself_along_an_axis_is_cut_in_its_own_plane() {
+        // From the staircase: thin, bent, and overlapping itself when seen from above.
+        let corners = [
+            (7.6584, 158.5416, 3.945),
+            (5.4035, 158.5416, 3.9642),
+            (5.3848, 158.3766, 4.163),
+            (9.9299, 158.3766, 3.6855),
+            (12.0492, 158.3766, 2.8071),
+            (11.9543, 158.5416, 2.6314),
+        ];
+        let corners = corners.map(|(x, y, z)| DVec3::new(x, y, z));
+        let mut cutter = Cutter::new();
+        let (triangles, covered) = cutter.cut(&corners);
+        assert!(covered && is_complete(6, triangles));
+    }
+
+    #[test]
     fn a_polygon_in_a_slanted_plane_is_covered() {
         // The arrow of four corners in the plane x + y + z = 0, reflex at the last.
         let (u, v) = (DVec3::new(1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, -2.0));

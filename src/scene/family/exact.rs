@@ -52,12 +52,16 @@ pub fn exp(x: f64) -> f64 {
 /// The `n`-th root of `x` in (0, 1e12], by Newton's method.
 pub fn root(x: f64, n: u32) -> f64 {
     let power = |y: f64, n: u32| (0..n).fold(1.0, |p, _| p * y);
-    // From above the root it falls steadily, by 1/n a step at least; 400 steps reach it for any n up to 10.
+    // From above, it falls towards the root until rounding stops it.
     let mut y = x.max(1.0);
-    for _ in 0..400 {
-        y -= (y - x / power(y, n - 1)) / f64::from(n);
+    loop {
+        let next = y - (y - x / power(y, n - 1)) / f64::from(n);
+        if next < y {
+            y = next;
+        } else {
+            return y;
+        }
     }
-    y
 }
 
 #[cfg(test)]

@@ -49,7 +49,10 @@ pub fn speed(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{accel, kernel, scene, trace};
+    use crate::accel;
+    use crate::kernel;
+    use crate::scene;
+    use crate::trace;
 
     #[test]
     fn a_speed_has_as_many_samples_as_the_budget_asks_for_and_none_without_rays() {

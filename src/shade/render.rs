@@ -252,10 +252,12 @@ impl<'a> PixelGrid<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::accel;
     use crate::geometry::Vec3;
+    use crate::kernel;
+    use crate::scene;
     use crate::scene::{Light, Material};
     use crate::shade::{CHANNELS, channel};
-    use crate::{accel, kernel, scene};
 
     /// The teapot at a coarse tessellation, with a light and some colour.
     fn lit_teapot() -> Scene {

@@ -1,11 +1,12 @@
 //! The plan as it is edited: each line is a text that a person could have written on the command line; together they
 //! are a [`Plan`], or say line by line why not.
 
+use crate::accel;
+use crate::kernel;
 use crate::lab::{self, MAX_THREADS, NRule, Plan};
 use crate::registry::Choice;
 use crate::scene::{self, SCENES};
 use crate::trace::{self, MAX_RAYS, RAY_SETS};
-use crate::{accel, kernel};
 
 /// A line of the plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -21,7 +21,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::geometry::{Hit, Ray};
+use crate::geometry::{Aabb, Hit, Ray};
 use crate::kernel;
 use crate::registry::{Choice, ChoiceError, ParamSpec, Params};
 use crate::scene::Mesh;
@@ -31,6 +31,7 @@ mod bvh;
 mod clip;
 mod grid;
 mod kd_tree;
+mod record;
 mod sah;
 mod slab;
 mod stack;
@@ -42,6 +43,7 @@ mod visit;
 pub use brute::Brute;
 pub use bvh::Bvh;
 pub use kd_tree::KdTree;
+pub use record::{Outcome, PlaceKind, Recording, Test, Visit};
 pub use traced::finish;
 pub use visit::{Counts, Visitor};
 
@@ -49,6 +51,9 @@ pub use visit::{Counts, Visitor};
 pub trait Structure: Send + Sync + 'static {
     /// What one thread needs beside the structure to traverse it, e.g. mailboxes.
     type Scratch: Send;
+
+    /// What the places that list triangles are called.
+    const LEAF: PlaceKind = PlaceKind::Leaf;
 
     /// A fresh scratch.
     fn scratch(&self) -> Self::Scratch;
@@ -58,6 +63,12 @@ pub trait Structure: Send + Sync + 'static {
     /// Calls [`Visitor::step`] for each cell or node and [`Visitor::test`] for each triangle it offers; returns at once
     /// when a test says that the query is finished, and when what is left begins beyond [`Visitor::t_limit`].
     fn traverse<V: Visitor>(&self, ray: &Ray, scratch: &mut Self::Scratch, visitor: &mut V);
+
+    /// The box of a place that [`Visitor::step`] named, rounded to `f32`; `None` where the structure has none or no such
+    /// place. Asked only where a ray's way is recorded: at most linear in the depth.
+    fn place_bounds(&self, _place: u64) -> Option<Aabb> {
+        None
+    }
 
     /// Sizes and shape.
     fn stats(&self) -> StructureStats;
@@ -101,6 +112,8 @@ pub trait Accelerator: Send + Sync {
     fn closest_counted(&self, rays: &[Ray], hits: &mut [Hit], counts: &mut [Counts]);
     /// As [`Accelerator::occluded`], counting the work of each ray.
     fn occluded_counted(&self, rays: &[Ray], blocked: &mut [bool], counts: &mut [Counts]);
+    /// Every step and every test of the closest-hit query of a valid ray; the same answer as [`Accelerator::closest`].
+    fn inspect(&self, ray: &Ray) -> Recording;
     /// Sizes and shape of the structure.
     fn stats(&self) -> StructureStats;
     /// Bytes of structure and packed triangles together.

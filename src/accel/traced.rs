@@ -6,8 +6,9 @@ use crate::geometry::{Hit, Ray};
 use crate::kernel::{self, Kernel, KernelUser};
 use crate::scene::Mesh;
 
+use super::record::Recorder;
 use super::visit::{Counted, Counter, PackedMesh, Query, Uncounted};
-use super::{Accelerator, BuildError, BuildRequest, Counts, Structure, StructureStats};
+use super::{Accelerator, BuildError, BuildRequest, Counts, Recording, Structure, StructureStats};
 
 /// Binds `structure` to the kernel that `request` names.
 ///
@@ -98,6 +99,22 @@ impl<S: Structure, K: Kernel> Accelerator for Traced<S, K> {
             blocked[i] = hit.is_hit();
             counts[i] = counter.counts;
         });
+    }
+
+    fn inspect(&self, ray: &Ray) -> Recording {
+        let mut recording = Recording {
+            visits: Vec::new(),
+            hit: Hit::MISS,
+        };
+        let recorder = Recorder::new(S::LEAF);
+        self.each::<_, false>(std::slice::from_ref(ray), recorder, |_, hit, recorder| {
+            recording.hit = hit;
+            recording.visits.clone_from(&recorder.visits);
+        });
+        for visit in &mut recording.visits {
+            visit.bounds = self.structure.place_bounds(visit.place);
+        }
+        recording
     }
 
     fn stats(&self) -> StructureStats {

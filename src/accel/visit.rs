@@ -14,6 +14,10 @@ pub trait Visitor {
     /// Tests a triangle; returns true when the query is finished and the traversal must return.
     fn test(&mut self, prim: u32) -> bool;
 
+    /// A triangle was not tested, because this ray had tested it before.
+    #[inline(always)]
+    fn skipped(&mut self, _prim: u32) {}
+
     /// Nothing that begins beyond this `t` can change the answer; what begins at it still can.
     fn t_limit(&self) -> f32;
 }
@@ -35,8 +39,13 @@ pub struct Counts {
 pub(super) trait Counter {
     /// The next ray begins.
     fn begin(&mut self);
-    fn step(&mut self, leaf: bool, references: u32);
-    fn test(&mut self, prim: u32);
+    /// See [`Visitor::step`].
+    fn step(&mut self, place: u64, leaf: bool, references: u32, entry: f64, exit: f64);
+    /// A triangle was tested: the kernel's `t` where it found a hit, and whether that became the nearest.
+    fn test(&mut self, prim: u32, t: Option<f32>, nearest: bool);
+    /// See [`Visitor::skipped`].
+    #[inline(always)]
+    fn skipped(&mut self, _prim: u32) {}
 }
 
 /// Counts nothing; every call compiles away.
@@ -46,9 +55,9 @@ impl Counter for Uncounted {
     #[inline(always)]
     fn begin(&mut self) {}
     #[inline(always)]
-    fn step(&mut self, _: bool, _: u32) {}
+    fn step(&mut self, _: u64, _: bool, _: u32, _: f64, _: f64) {}
     #[inline(always)]
-    fn test(&mut self, _: u32) {}
+    fn test(&mut self, _: u32, _: Option<f32>, _: bool) {}
 }
 
 /// Counts the work of one ray after another.
@@ -77,12 +86,12 @@ impl Counter for Counted {
         self.counts = Counts::default();
     }
 
-    fn step(&mut self, leaf: bool, references: u32) {
+    fn step(&mut self, _: u64, leaf: bool, references: u32, _: f64, _: f64) {
         self.counts.steps += 1;
         self.counts.empty_steps += u64::from(leaf && references == 0);
     }
 
-    fn test(&mut self, prim: u32) {
+    fn test(&mut self, prim: u32, _: Option<f32>, _: bool) {
         let last = std::mem::replace(&mut self.tested_by[prim as usize], self.ray);
         self.counts.tests += 1;
         self.counts.duplicate_tests += u64::from(last == self.ray);
@@ -120,7 +129,8 @@ impl<'a, K: Kernel, C: Counter, const OCCLUSION: bool> Query<'a, K, C, OCCLUSION
         }
     }
 
-    /// Takes a hit that is nearer, or equally near with a lower index.
+    /// Takes a hit that is nearer, or equally near with a lower index; for occlusion any within the interval. Whether it
+    /// was taken.
     #[inline(always)]
     fn offer(&mut self, prim: u32, hit: LaneHit<1, f32>) -> bool {
         let in_interval = hit.t >= self.ray.t_min && hit.t <= self.ray.t_max;
@@ -144,6 +154,7 @@ impl<'a, K: Kernel, C: Counter, const OCCLUSION: bool> Query<'a, K, C, OCCLUSION
                     .kernel
                     .t_error(self.ray, &self.packed.mesh.corners(prim), hit.t);
             self.limit = self.limit.min(hit.t + error);
+            return true;
         }
         false
     }
@@ -151,21 +162,28 @@ impl<'a, K: Kernel, C: Counter, const OCCLUSION: bool> Query<'a, K, C, OCCLUSION
 
 impl<K: Kernel, C: Counter, const OCCLUSION: bool> Visitor for Query<'_, K, C, OCCLUSION> {
     #[inline(always)]
-    fn step(&mut self, _place: u64, leaf: bool, references: u32, _entry: f64, _exit: f64) {
-        self.counter.step(leaf, references);
+    fn step(&mut self, place: u64, leaf: bool, references: u32, entry: f64, exit: f64) {
+        self.counter.step(place, leaf, references, entry, exit);
     }
 
     #[inline(always)]
     fn test(&mut self, prim: u32) -> bool {
-        self.counter.test(prim);
-        match self
+        let found = self
             .packed
             .kernel
-            .intersect(&self.prepared, &self.packed.triangles[prim as usize])
-        {
-            Some(hit) => self.offer(prim, hit),
-            None => false,
-        }
+            .intersect(&self.prepared, &self.packed.triangles[prim as usize]);
+        let Some(hit) = found else {
+            self.counter.test(prim, None, false);
+            return false;
+        };
+        let taken = self.offer(prim, hit);
+        self.counter.test(prim, Some(hit.t), taken);
+        OCCLUSION && taken
+    }
+
+    #[inline(always)]
+    fn skipped(&mut self, prim: u32) {
+        self.counter.skipped(prim);
     }
 
     #[inline(always)]

@@ -175,6 +175,11 @@ impl Structure for Bvh {
         }
     }
 
+    fn place_bounds(&self, place: u64) -> Option<Aabb> {
+        let place = usize::try_from(place).ok()?;
+        self.nodes.get(place).map(Node::bounds)
+    }
+
     fn stats(&self) -> StructureStats {
         StructureStats {
             cells: self.nodes.len() as u64,

@@ -126,6 +126,13 @@ impl Lattice {
         (cell[2] * self.dims[1] + cell[1]) * self.dims[0] + cell[0]
     }
 
+    /// The cell at a place in the lists; `None` beyond the last.
+    pub fn cell(&self, place: u64) -> Option<[u32; 3]> {
+        let [nx, ny, _] = self.dims.map(u64::from);
+        let cell = [place % nx, place / nx % ny, place / (nx * ny)];
+        (place < self.len()).then_some(cell.map(|i| i as u32))
+    }
+
     /// Centre and half edge lengths of a block of cells, grown by `pad` on all sides.
     #[inline(always)]
     pub fn padded(&self, block: &Block, pad: f64) -> (DVec3, DVec3) {

@@ -19,13 +19,13 @@
 
 use std::marker::PhantomData;
 
-use crate::geometry::Ray;
+use crate::geometry::{Aabb, Ray, Vec3};
 use crate::registry::{ParamKind, ParamSpec, Params};
 use crate::scene::Mesh;
 
 use super::{
-    Accelerator, AcceleratorEntry, BuildError, BuildRequest, MAX_N, Resolution, Structure,
-    StructureStats, Visitor, finish,
+    Accelerator, AcceleratorEntry, BuildError, BuildRequest, MAX_N, PlaceKind, Resolution,
+    Structure, StructureStats, Visitor, finish,
 };
 
 mod lattice;
@@ -173,6 +173,8 @@ impl<M> Grid<M> {
 impl<M: Mailbox> Structure for Grid<M> {
     type Scratch = M;
 
+    const LEAF: PlaceKind = PlaceKind::Cell;
+
     fn scratch(&self) -> M {
         M::default()
     }
@@ -194,7 +196,9 @@ impl<M: Mailbox> Structure for Grid<M> {
                 walk.base + exit,
             );
             for &prim in list {
-                if mailbox.takes(prim) && visitor.test(prim) {
+                if !mailbox.takes(prim) {
+                    visitor.skipped(prim);
+                } else if visitor.test(prim) {
                     return;
                 }
             }
@@ -202,6 +206,18 @@ impl<M: Mailbox> Structure for Grid<M> {
                 return;
             }
         }
+    }
+
+    fn place_bounds(&self, place: u64) -> Option<Aabb> {
+        let cell = self.lattice.cell(place)?;
+        let corner = |end: u32| {
+            let plane = |a: usize| self.lattice.plane(a, cell[a] + end) as f32;
+            Vec3::from_array([0, 1, 2].map(plane))
+        };
+        Some(Aabb {
+            min: corner(0),
+            max: corner(1),
+        })
     }
 
     fn stats(&self) -> StructureStats {

@@ -124,6 +124,14 @@ impl KdTree {
     }
 }
 
+/// The two parts of the cell of an interior node.
+fn halves(cell: &Aabb, node: Node) -> [Aabb; 2] {
+    let (mut below, mut above) = (*cell, *cell);
+    below.max[node.axis()] = node.plane();
+    above.min[node.axis()] = node.plane();
+    [below, above]
+}
+
 impl Structure for KdTree {
     type Scratch = Room;
 
@@ -175,6 +183,23 @@ impl Structure for KdTree {
             };
             (place, entry, exit) = (next.node, next.entry, next.exit);
         }
+    }
+
+    fn place_bounds(&self, place: u64) -> Option<Aabb> {
+        let place = u32::try_from(place).ok()?;
+        self.nodes.get(place as usize)?;
+        let (mut cell, mut at) = (self.bounds, 0);
+        // Nodes lie depth first: what is below a plane comes before its second child.
+        while at != place {
+            let node = self.nodes[at as usize];
+            let [below, above] = halves(&cell, node);
+            (cell, at) = if place < node.above() {
+                (below, at + 1)
+            } else {
+                (above, node.above())
+            };
+        }
+        Some(cell)
     }
 
     fn stats(&self) -> StructureStats {

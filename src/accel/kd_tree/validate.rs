@@ -4,7 +4,7 @@ use crate::geometry::{Aabb, DVec3, Vec3};
 use crate::scene::Mesh;
 
 use super::super::clip::clipped_bounds;
-use super::{KdTree, MAX_DEPTH, Node};
+use super::{KdTree, MAX_DEPTH, Node, halves};
 
 /// Meshes above this size are checked by a sample of about as many triangles.
 const SAMPLE: usize = 20_000;
@@ -73,13 +73,6 @@ fn shape(tree: &KdTree, mesh: &Mesh) -> Result<(), String> {
         Some(index) => Err(format!("node {index} is never reached")),
         None => Ok(()),
     }
-}
-
-fn halves(cell: &Aabb, node: Node) -> [Aabb; 2] {
-    let (mut below, mut above) = (*cell, *cell);
-    below.max[node.axis()] = node.plane();
-    above.min[node.axis()] = node.plane();
-    [below, above]
 }
 
 /// Every triangle of `sample` that reaches into the inside of a leaf is listed there.

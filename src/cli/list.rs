@@ -86,9 +86,9 @@ fn describe(row: &Value) -> String {
         "" => text("name").to_owned(),
         size => format!("{}:{size}", text("name")),
     };
-    let mut lines = format!("{name:<22} {}\n", text("about"));
+    let mut lines = vec![format!("{name:<22} {}", text("about"))];
     if !text("paper").is_empty() {
-        lines.push_str(&format!("{:<22}   {}\n", "", text("paper")));
+        lines.push(format!("{:<22}   {}", "", text("paper")));
     }
     for param in row["params"].as_array().into_iter().flatten() {
         let accepts = match (&param["choices"], &param["range"]) {
@@ -99,13 +99,14 @@ fn describe(row: &Value) -> String {
             (_, Value::Array(range)) => format!("{}..{}", range[0], range[1]),
             _ => String::new(),
         };
-        lines.push_str(&format!(
-            "{:<22}   {}={accepts} [default: {}]: {}\n",
+        let part = |key: &str| param[key].as_str().unwrap_or_default();
+        lines.push(format!(
+            "{:<22}   {}={accepts} [default: {}]: {}",
             "",
-            param["name"].as_str().unwrap_or_default(),
-            param["default"].as_str().unwrap_or_default(),
-            param["about"].as_str().unwrap_or_default(),
+            part("name"),
+            part("default"),
+            part("about"),
         ));
     }
-    lines
+    lines.join("\n") + "\n"
 }

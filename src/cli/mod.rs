@@ -5,6 +5,9 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser};
 
+use crate::scene;
+use crate::tui::{self, TuiError};
+
 mod args;
 mod choices;
 mod export;
@@ -43,11 +46,7 @@ pub fn main() -> ExitCode {
 /// What the command failed of; [`Failure::code`] is the exit code.
 pub fn run(cli: Cli) -> Result<(), Failure> {
     match cli.command {
-        None => Err(Failure::Usage(
-            "there is no terminal to open the lab in; use a command such as `raylab sweep` or `raylab render`, see \
-             `raylab --help`"
-                .to_owned(),
-        )),
+        None => lab(cli.scenes),
         Some(Command::List(args)) => list::run(&args),
         Some(Command::Render(args)) => render::run(&args),
         Some(Command::Rays(args)) => rays::write(&args),
@@ -56,6 +55,27 @@ pub fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Man) => manual(),
         Some(Command::Sweep(args)) => sweep::run(&args),
         Some(Command::Report(args)) => export::run(&args),
+    }
+}
+
+/// Opens the terminal lab.
+fn lab(scenes: Vec<String>) -> Result<(), Failure> {
+    for spec in &scenes {
+        scene::check(spec)?;
+    }
+    Ok(tui::run(&tui::Options {
+        scenes,
+        ..tui::Options::default()
+    })?)
+}
+
+impl From<TuiError> for Failure {
+    fn from(error: TuiError) -> Self {
+        match error {
+            TuiError::NoTerminal => Self::Usage(error.to_string()),
+            TuiError::Terminal(_) => Self::Failed(error.to_string()),
+            TuiError::Ended { .. } => Self::Interrupted,
+        }
     }
 }
 

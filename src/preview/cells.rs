@@ -116,7 +116,12 @@ impl Cells {
             other => other,
         };
         for cell in &mut self.cells {
-            *cell = two_inks(cell.symbol, coarse(cell.fg), coarse(cell.bg));
+            // Only true colours change. Characters that stand for brightness have no ink, or no ground, of that kind.
+            if let (Ink::Rgb(_), Ink::Rgb(_)) = (cell.fg, cell.bg) {
+                *cell = two_inks(cell.symbol, coarse(cell.fg), coarse(cell.bg));
+            } else {
+                (cell.fg, cell.bg) = (coarse(cell.fg), coarse(cell.bg));
+            }
         }
         self
     }
@@ -408,6 +413,15 @@ mod tests {
                     bg,
                     ..Cell::plain(' ')
                 }));
+        }
+    }
+
+    #[test]
+    fn coarsening_keeps_characters_that_stand_for_brightness() {
+        let image = Image::filled(1, 2, [200; 3]);
+        for mode in [ColorMode::None, ColorMode::Ansi16, ColorMode::Ansi256] {
+            let cells = Cells::of(&image, 1, 1, &Symbols::default(), mode);
+            assert_eq!(cells.clone().coarsened(), cells);
         }
     }
 

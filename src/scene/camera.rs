@@ -11,7 +11,7 @@ pub struct Camera {
     pub at: Vec3,
     /// Upwards in the picture; need not be perpendicular to the view.
     pub up: Vec3,
-    /// Vertical field of view in degrees.
+    /// Field of view in degrees across the smaller side of the picture: the vertical one, unless it stands upright.
     pub fov_deg: f32,
 }
 
@@ -66,10 +66,11 @@ impl Camera {
     #[must_use]
     pub fn ray(&self, x: f32, y: f32, width: u32, height: u32) -> Ray {
         let (right, up, forward) = self.frame();
-        let half = (self.fov_deg.to_radians() * 0.5).tan();
-        let aspect = width as f32 / height as f32;
-        let sx = (2.0 * x / width as f32 - 1.0) * half * aspect;
-        let sy = (1.0 - 2.0 * y / height as f32) * half;
+        // The field of view spans the smaller side, so that what fits a square picture fits every picture.
+        let (wide, high) = (width as f32, height as f32);
+        let scale = (self.fov_deg.to_radians() * 0.5).tan() / wide.min(high);
+        let sx = (2.0 * x - wide) * scale;
+        let sy = (high - 2.0 * y) * scale;
         Ray::new(self.eye, (forward + right * sx + up * sy).normalize())
     }
 

@@ -150,6 +150,8 @@ pub enum Action {
     Accept,
     /// Erase the character before the cursor.
     Erase,
+    /// Erase the whole text.
+    Clear,
     /// Answer no.
     Refuse,
 }
@@ -565,6 +567,13 @@ pub const KEYMAP: &[Binding] = &[
         &[P::Text],
         "erase the character before the cursor",
     ),
+    row(
+        &[Key::ctrl('u')],
+        A::Clear,
+        &[P::Text],
+        "erase the whole text",
+    )
+    .hint("Ctrl-U", "clear"),
     row(
         &[Key::code(KeyCode::Left)],
         A::Left,

@@ -46,6 +46,12 @@ impl TextInput {
         }
     }
 
+    /// Removes the whole text.
+    pub fn clear(&mut self) {
+        self.text.clear();
+        self.cursor = 0;
+    }
+
     /// Moves the cursor by one character.
     pub fn left(&mut self) {
         self.cursor = self.cursor.saturating_sub(1);
@@ -103,6 +109,8 @@ mod tests {
         assert_eq!(input.text(), "ö");
         input.insert('\u{1b}');
         assert_eq!(input.text(), "ö");
+        input.clear();
+        assert_eq!((input.text(), input.cursor()), ("", 0));
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The real program in a pseudo-terminal, and the screen that a person would see.
 
 use std::io::{Read, Write};
+use std::num::NonZeroU16;
 use std::path::Path;
 use std::sync::mpsc::{Receiver, channel};
 use std::thread;
@@ -9,7 +10,7 @@ use std::time::{Duration, Instant};
 use portable_pty::{Child, CommandBuilder, MasterPty, PtySize, native_pty_system};
 
 /// Generous, since test machines are slow and loaded; nothing waits longer than it must.
-const PATIENCE: Duration = Duration::from_secs(120);
+const PATIENCE: Duration = Duration::from_mins(1);
 
 /// The program in a pseudo-terminal.
 pub struct Terminal {
@@ -25,7 +26,9 @@ pub struct Terminal {
 impl Terminal {
     /// Starts `raylab` with `args` in `dir`, in a terminal of `cols` by `rows`.
     pub fn start(args: &[&str], env: &[(&str, &str)], dir: &Path, cols: u16, rows: u16) -> Self {
-        let pair = native_pty_system().openpty(size(cols, rows)).expect("a pseudo-terminal can be had");
+        let pair = native_pty_system()
+            .openpty(size(cols, rows))
+            .expect("a pseudo-terminal can be had");
         let modes_before = modes(pair.master.as_ref());
         let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_raylab"));
         command.args(args);
@@ -36,11 +39,17 @@ impl Terminal {
         for (key, value) in env {
             command.env(key, value);
         }
-        let child = pair.slave.spawn_command(command).expect("the program starts");
-        let mut reader = pair.master.try_clone_reader().expect("the pseudo-terminal can be read");
+        let child = pair
+            .slave
+            .spawn_command(command)
+            .expect("the program starts");
+        let mut reader = pair
+            .master
+            .try_clone_reader()
+            .expect("the pseudo-terminal can be read");
         let (sender, output) = channel();
         thread::spawn(move || {
-            let mut buffer = [0; 65536];
+            let mut buffer = [0; 8192];
             while let Ok(n @ 1..) = reader.read(&mut buffer) {
                 if sender.send(buffer[..n].to_vec()).is_err() {
                     break;
@@ -48,25 +57,32 @@ impl Terminal {
             }
         });
         Self {
-            keys: pair.master.take_writer().expect("the pseudo-terminal can be written"),
+            keys: pair
+                .master
+                .take_writer()
+                .expect("the pseudo-terminal can be written"),
             master: pair.master,
             child,
             output,
-            parser: vt100::Parser::new(rows, cols, 0),
+            parser: vt100::Parser::new(cells(rows), cells(cols), 0),
             modes_before,
         }
     }
 
     /// Types.
     pub fn press(&mut self, keys: &str) {
-        self.keys.write_all(keys.as_bytes()).expect("the program reads keys");
+        self.keys
+            .write_all(keys.as_bytes())
+            .expect("the program reads keys");
         self.keys.flush().expect("the program reads keys");
     }
 
     /// Changes the terminal's size, as dragging a window's corner does.
     pub fn resize(&mut self, cols: u16, rows: u16) {
-        self.master.resize(size(cols, rows)).expect("a pseudo-terminal can be resized");
-        self.parser.screen_mut().set_size(rows, cols);
+        self.master
+            .resize(size(cols, rows))
+            .expect("a pseudo-terminal can be resized");
+        self.parser.screen_mut().set_size(cells(rows), cells(cols));
     }
 
     /// Waits until the screen satisfies `wanted`; panics with the screen when it does not in time.
@@ -77,7 +93,10 @@ impl Terminal {
             if wanted(&screen) {
                 return screen;
             }
-            assert!(Instant::now() < deadline, "waited in vain for {what}; the screen:\n{screen}");
+            assert!(
+                Instant::now() < deadline,
+                "waited in vain for {what}; the screen:\n{screen}"
+            );
             self.take_output(Duration::from_millis(50));
         }
     }
@@ -93,11 +112,28 @@ impl Terminal {
         self.parser.screen().contents()
     }
 
+    /// Whether any cell of the screen has a colour of its own.
+    pub fn colours_seen(&mut self) -> bool {
+        self.take_output(Duration::ZERO);
+        let screen = self.parser.screen();
+        let (rows, cols) = screen.size();
+        (0..u16::from(rows)).any(|row| {
+            (0..u16::from(cols)).any(|col| {
+                let plain = |c: vt100::Color| c == vt100::Color::Default;
+                screen
+                    .cell(row, col)
+                    .is_some_and(|cell| !plain(cell.fgcolor()) || !plain(cell.bgcolor()))
+            })
+        })
+    }
+
     /// Sends a signal to the program.
     #[cfg(unix)]
     pub fn signal(&self, name: &str) {
         let pid = self.child.process_id().expect("the program runs");
-        let sent = std::process::Command::new("kill").args([&format!("-{name}"), &pid.to_string()]).status();
+        let sent = std::process::Command::new("kill")
+            .args([&format!("-{name}"), &pid.to_string()])
+            .status();
         assert!(sent.expect("kill runs").success());
     }
 
@@ -106,11 +142,19 @@ impl Terminal {
         let deadline = Instant::now() + PATIENCE;
         loop {
             self.take_output(Duration::from_millis(20));
-            if let Some(status) = self.child.try_wait().expect("the program can be waited for") {
+            if let Some(status) = self
+                .child
+                .try_wait()
+                .expect("the program can be waited for")
+            {
                 self.take_output(Duration::from_millis(200));
                 return status.exit_code();
             }
-            assert!(Instant::now() < deadline, "the program does not end; the screen:\n{}", self.screen());
+            assert!(
+                Instant::now() < deadline,
+                "the program does not end; the screen:\n{}",
+                self.screen()
+            );
         }
     }
 
@@ -118,11 +162,22 @@ impl Terminal {
     pub fn assert_restored(&mut self) {
         self.take_output(Duration::from_millis(100));
         let screen = self.parser.screen();
-        assert!(!screen.alternate_screen(), "the alternate screen is still shown");
+        assert!(
+            !screen.alternate_screen(),
+            "the alternate screen is still shown"
+        );
         assert!(!screen.hide_cursor(), "the cursor is still hidden");
         assert!(!screen.bracketed_paste(), "bracketed paste is still on");
-        assert_eq!(screen.mouse_protocol_mode(), vt100::MouseProtocolMode::None, "the mouse is still captured");
-        assert_eq!(modes(self.master.as_ref()), self.modes_before, "the line discipline was changed");
+        assert_eq!(
+            screen.mouse_protocol_mode(),
+            vt100::MouseProtocolMode::None,
+            "the mouse is still captured"
+        );
+        assert_eq!(
+            modes(self.master.as_ref()),
+            self.modes_before,
+            "the line discipline was changed"
+        );
     }
 
     /// Feeds what has come, waiting for more at most `patience`.
@@ -143,6 +198,11 @@ impl Drop for Terminal {
     }
 }
 
+/// A terminal has at least one row and column.
+fn cells(count: u16) -> NonZeroU16 {
+    NonZeroU16::new(count).unwrap_or(NonZeroU16::MIN)
+}
+
 fn size(cols: u16, rows: u16) -> PtySize {
     PtySize {
         rows,
@@ -155,8 +215,18 @@ fn size(cols: u16, rows: u16) -> PtySize {
 /// The line discipline's settings, as text to compare.
 #[cfg(unix)]
 fn modes(master: &dyn MasterPty) -> String {
-    let termios = master.get_termios().expect("a pseudo-terminal has settings");
-    format!("{:?}", (termios.input_flags, termios.output_flags, termios.local_flags, termios.control_flags))
+    let termios = master
+        .get_termios()
+        .expect("a pseudo-terminal has settings");
+    format!(
+        "{:?}",
+        (
+            termios.input_flags,
+            termios.output_flags,
+            termios.local_flags,
+            termios.control_flags
+        )
+    )
 }
 
 #[cfg(not(unix))]

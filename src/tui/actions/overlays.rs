@@ -86,6 +86,7 @@ fn text(state: &mut State, action: Action) {
     };
     match action {
         Action::Erase => field.input.erase(),
+        Action::Clear => field.input.clear(),
         Action::Left => field.input.left(),
         Action::Right => field.input.right(),
         Action::First => field.input.home(),

@@ -37,6 +37,9 @@ const GLANCE: Duration = Duration::from_millis(250);
 /// How long quitting waits for the sample in progress and the report.
 const PATIENCE: Duration = Duration::from_secs(15);
 
+/// How long after a suspension the signal that ended it may still be told.
+const ECHO: Duration = Duration::from_secs(1);
+
 /// How the loop goes on.
 enum Next {
     Stay,
@@ -67,6 +70,7 @@ pub(super) fn run(
         runner: None,
         plan: plan.clone(),
         pacer: Pacer::new(),
+        resumed: None,
     };
     input::spawn(signals, to);
     let first = update(&mut state, Event::Resize(size.width, size.height));
@@ -88,6 +92,8 @@ struct App {
     /// The plan of the last sweep.
     plan: Plan,
     pacer: Pacer,
+    /// When the program went on after it had suspended itself.
+    resumed: Option<Instant>,
 }
 
 impl App {
@@ -178,7 +184,10 @@ impl App {
                 Ok(Next::Stay)
             }
             Message::Signal(Signal::Resumed) => {
-                self.repaint(state, tty)?;
+                // The signal that ends our own suspension is old news.
+                if self.resumed.take().is_none_or(|at| at.elapsed() > ECHO) {
+                    self.repaint(state, tty)?;
+                }
                 Ok(Next::Stay)
             }
             Message::InputLost(error) => Err(error.into()),
@@ -258,11 +267,11 @@ impl App {
         self.steering.disturb();
         Tty::release();
         signals::stop()?;
-        tty.reclaim()?;
+        self.resumed = Some(Instant::now());
         self.repaint(state, tty)
     }
 
-    /// Draws everything anew, in the size that the terminal has now.
+    /// Claims the terminal anew and draws everything, in the size that it has now.
     fn repaint(&mut self, state: &mut State, tty: &mut Tty) -> Result<(), TuiError> {
         self.steering.disturb();
         tty.reclaim()?;

@@ -13,6 +13,7 @@ use ratatui::layout::{Constraint, Layout, Rect};
 
 use super::overlay::Overlay;
 use super::plan_editor::Field;
+use super::screens::details;
 use super::state::{Panel, Screen, State};
 
 /// Fewest columns and rows that the screens need.
@@ -164,13 +165,19 @@ pub fn middle(area: Rect, width: u16, height: u16) -> Rect {
     )
 }
 
+/// Columns of the box of details.
+const DETAILS: u16 = 78;
+
 /// The box of an overlay over `body`.
 #[must_use]
 pub fn overlay(overlay: &Overlay, body: Rect) -> Rect {
     match overlay {
-        Overlay::Pick(pick) => middle(body, 76, pick.items.len() as u16 + 4),
+        Overlay::Pick(pick) => middle(body, 78, pick.items.len() as u16 + 6),
         Overlay::Text(_) => middle(body, 76, 6),
-        Overlay::Details(..) => middle(body, 90, 30),
+        Overlay::Details(row, _) => {
+            let lines = details::text(row, DETAILS as usize - 2).len();
+            middle(body, DETAILS, lines as u16 + 2)
+        }
         Overlay::Quit(_) => middle(body, 64, 7),
     }
 }

@@ -118,6 +118,13 @@ impl Pick {
             marked: 0,
             filter: String::new(),
         }
+        .at_first_taken()
+    }
+
+    /// Marks the first choice that is taken.
+    fn at_first_taken(mut self) -> Self {
+        self.marked = self.items.iter().position(|item| item.taken).unwrap_or(0);
+        self
     }
 
     /// Indices of the choices that are shown.

@@ -11,7 +11,7 @@ use serde::de::IgnoredAny;
 use super::app::Message;
 use super::state::BundleRow;
 use super::update::Event;
-use crate::report::Report;
+use crate::report::{Report, Run};
 
 /// Lists the bundles in `results`.
 pub(super) fn list(results: PathBuf, to: Sender<Message>) {
@@ -20,14 +20,31 @@ pub(super) fn list(results: PathBuf, to: Sender<Message>) {
     });
 }
 
-/// Reads the report of the bundle at `path`.
+/// Reads the report of the bundle at `path`, with runs that so far only its journal has.
 pub(super) fn read(path: PathBuf, to: Sender<Message>) {
     thread::spawn(move || {
         let read = Report::read(&path)
-            .map(|report| (name(&path), Box::new(report)))
+            .map(|mut report| {
+                add_journal(&mut report, &path);
+                (name(&path), Box::new(report))
+            })
             .map_err(|error| error.to_string());
         let _ = to.send(Message::News(Event::Read(read)));
     });
+}
+
+/// Adds the runs of the journal that the report lacks. A line that is not whole yet is left out: a sweep may be writing
+/// it just now.
+fn add_journal(report: &mut Report, path: &Path) {
+    let journal = fs::read_to_string(path.join("runs.jsonl")).unwrap_or_default();
+    let runs = journal
+        .lines()
+        .filter_map(|line| serde_json::from_str::<Run>(line).ok());
+    for run in runs {
+        if report.runs.iter().all(|known| known.id != run.id) {
+            report.runs.push(run);
+        }
+    }
 }
 
 fn name(path: &Path) -> String {
@@ -121,6 +138,31 @@ mod tests {
         assert_eq!(names, ["new", "old", "torn", "killed"]);
         assert_eq!((rows[0].runs, rows[3].runs), (2, 3));
         assert!(rows[3].note.contains("--resume") && rows[2].note.contains("no report"));
+    }
+
+    #[test]
+    fn runs_that_only_the_journal_has_are_shown_too() {
+        let dir = tempfile::tempdir().unwrap();
+        let runs = crate::tui::fixture::finished().complete();
+        let lines: Vec<String> = runs
+            .iter()
+            .map(|run| serde_json::to_string(run).unwrap())
+            .collect();
+        let torn = &lines[0][..40];
+        fs::write(
+            dir.path().join("runs.jsonl"),
+            format!("{}\n{torn}", lines.join("\n")),
+        )
+        .unwrap();
+        let mut report = Report {
+            schema: Report::SCHEMA.to_owned(),
+            provenance: crate::report::Provenance::default(),
+            config: crate::lab::Plan::default(),
+            runs: vec![runs[1].clone()],
+        };
+        add_journal(&mut report, dir.path());
+        assert_eq!(report.runs.len(), runs.len());
+        assert_eq!(report.runs[0].id, runs[1].id);
     }
 
     #[test]

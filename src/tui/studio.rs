@@ -214,10 +214,14 @@ impl Worker {
         };
         let (columns, rows) = request.cells;
         let symbols = &request.wish.symbols;
-        let cells = Cells::of(&rendered.image, columns, rows, symbols, self.mode);
+        let mut cells = Cells::of(&rendered.image, columns, rows, symbols, self.mode);
+        if self.mode == ColorMode::True {
+            // Fewer bytes to send, hardly a difference to see.
+            cells = cells.coarsened();
+        }
         self.tell(PictureNews::Shown(Box::new(Shown {
             request: request.clone(),
-            cells: cells.coarsened(),
+            cells,
             legend: rendered.legend,
             found: rendered.stats.found,
         })));

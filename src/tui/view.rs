@@ -88,8 +88,13 @@ fn notice(state: &State, frame: &mut Frame, area: Rect) {
 fn footer(state: &State, width: u16) -> Vec<Span<'static>> {
     let place = state.place();
     let all: Vec<_> = keymap::hints(place, state.situation()).collect();
-    let always = ["Tab", "?", "q"];
-    let is_last = |key: &str| always.contains(&key) && place != Place::Pick;
+    let is_overlay = matches!(place, Place::Pick | Place::Text | Place::Details);
+    let always: &[&str] = if is_overlay {
+        &["Esc"]
+    } else {
+        &["Tab", "?", "q"]
+    };
+    let is_last = |key: &str| always.contains(&key);
     let size = |hint: &(&str, &str)| hint.0.chars().count() + hint.1.chars().count() + 3;
     let mut room = (width as usize)
         .saturating_sub(all.iter().filter(|h| is_last(h.0)).map(size).sum::<usize>());

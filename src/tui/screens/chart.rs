@@ -79,7 +79,7 @@ impl Chart<'_> {
                 .filter(|y| *y > 0.0)
         };
         let Some(y_axis) = y_axis(values()) else {
-            let text = "no values above zero yet";
+            let text = "The first curve appears with the first values.";
             buffer.set_stringn(
                 area.x + 1,
                 area.y,

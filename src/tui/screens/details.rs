@@ -1,14 +1,12 @@
 //! Everything known of one run.
 
 use ratatui::layout::Rect;
-use ratatui::text::Line;
 
 use crate::lab::Spread;
 use crate::tui::layout;
 use crate::tui::overlay::Overlay;
 use crate::tui::runs::{RunRow, Status, figure, mebibytes};
 use crate::tui::state::State;
-use crate::tui::theme::{Role, Theme};
 use crate::tui::view::wrapped;
 
 /// The greatest first line that still fills the box.
@@ -20,20 +18,20 @@ pub fn last_line(state: &State) -> usize {
     let (width, height) = state.size;
     let body = layout::parts(Rect::new(0, 0, width, height)).body;
     let area = layout::overlay(overlay, body);
-    text(state.theme, row, (area.width as usize).saturating_sub(2))
+    text(row, (area.width as usize).saturating_sub(2))
         .len()
         .saturating_sub((area.height as usize).saturating_sub(2))
 }
 
 /// The lines of the box.
 #[must_use]
-pub fn text(theme: Theme, row: &RunRow, width: usize) -> Vec<Line<'static>> {
+pub fn text(row: &RunRow, width: usize) -> Vec<String> {
     let run = &row.run;
     let mut lines = Vec::new();
     let mut put = |name: &str, value: String| {
         let mut name = name.to_owned();
         for part in wrapped(&value, width.saturating_sub(17)) {
-            lines.push(Line::from(format!(" {name:<15}{part}")));
+            lines.push(format!(" {name:<15}{part}"));
             name.clear();
         }
     };
@@ -115,11 +113,6 @@ pub fn text(theme: Theme, row: &RunRow, width: usize) -> Vec<Line<'static>> {
         put("note", warning.clone());
     }
     put("id", run.id.clone());
-    for line in &mut lines {
-        if line.to_string().contains("WRONG") || line.to_string().contains("failed:") {
-            *line = line.clone().style(theme.style(Role::Bad));
-        }
-    }
     lines
 }
 

@@ -37,9 +37,14 @@ pub fn draw(state: &State, overlay: &Overlay, frame: &mut Frame, body: Rect) {
         Overlay::Pick(list) => pick(state, list, frame, inner),
         Overlay::Text(field) => text(state, field, frame, inner),
         Overlay::Details(row, first) => {
-            let lines = details::text(state.theme, row, inner.width as usize);
+            let lines = details::text(row, inner.width as usize);
             let last = lines.len().saturating_sub(inner.height as usize);
-            rows(lines.into_iter().skip((*first).min(last)), frame, inner);
+            let styled = lines.into_iter().skip((*first).min(last)).map(|line| {
+                let bad = line.contains("WRONG") || line.contains(" failed: ");
+                let role = if bad { Role::Bad } else { Role::Text };
+                Line::styled(line, state.theme.style(role))
+            });
+            rows(styled, frame, inner);
         }
         Overlay::Quit(reason) => {
             let mut lines: Vec<Line> = wrapped(reason, inner.width as usize - 2)
@@ -64,12 +69,15 @@ fn rows<'a>(lines: impl Iterator<Item = Line<'a>>, frame: &mut Frame, area: Rect
     }
 }
 
+/// Rows below the choices: an empty one, two for the marked choice, one for a hint.
+const FOOT: u16 = 4;
+
 fn pick(state: &State, pick: &Pick, frame: &mut Frame, area: Rect) {
     let shown = pick.shown();
     let marked = pick.marked.min(shown.len().saturating_sub(1));
     let width = area.width as usize;
-    // The last row tells the filter, or how to type what the list lacks.
-    let room = area.height.saturating_sub(2) as usize;
+    // The last rows tell the marked choice in full, and the filter or how to type what the list lacks.
+    let room = area.height.saturating_sub(FOOT) as usize;
     let names = pick
         .items
         .iter()
@@ -100,6 +108,21 @@ fn pick(state: &State, pick: &Pick, frame: &mut Frame, area: Rect) {
             Line::styled(clipped(&text, width), state.theme.style(role))
         });
     rows(lines, frame, area);
+    let about = shown
+        .get(marked)
+        .map_or("", |&at| pick.items[at].about.as_str());
+    let foot = Rect::new(
+        area.x,
+        area.bottom().saturating_sub(FOOT - 1),
+        area.width,
+        FOOT - 2,
+    );
+    let about = wrapped(about, width - 2).into_iter();
+    rows(
+        about.map(|line| Line::from(format!(" {line}"))),
+        frame,
+        foot,
+    );
     let hint = if pick.filter.is_empty() {
         format!("t types: {}", pick.field.form())
     } else {

@@ -111,6 +111,10 @@ fn report(state: &State, opened: &Opened, frame: &mut Frame, area: Rect) {
         }
         table_area = rest;
     }
+    if opened.runs.rows.is_empty() {
+        let text = "This report has no runs: the sweep was stopped before the first was complete.";
+        return lines(state.theme, text, frame, table_area);
+    }
     table::draw(
         state.theme,
         "runs",

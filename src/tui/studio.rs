@@ -160,7 +160,7 @@ impl Worker {
     fn serve(&mut self, request: &Request) -> Result<(), String> {
         let steering = self.steering.clone();
         if steering.is_running() {
-            self.doing(request, "waits for the sample to end");
+            self.doing(request, "waits for a gap in the sweep");
         }
         let Some(_hold) = steering.hold(|| self.cancelled()) else {
             return Ok(());

@@ -12,7 +12,7 @@ use std::thread::{self, ThreadId};
 use crossterm::cursor::{Hide, Show};
 use crossterm::event::{DisableBracketedPaste, EnableBracketedPaste};
 use crossterm::terminal::{
-    self, BeginSynchronizedUpdate, EndSynchronizedUpdate, EnterAlternateScreen,
+    self, BeginSynchronizedUpdate, Clear, ClearType, EndSynchronizedUpdate, EnterAlternateScreen,
     LeaveAlternateScreen,
 };
 use crossterm::{execute, queue};
@@ -145,9 +145,11 @@ fn enter() -> io::Result<()> {
 /// Gives the terminal back. Errors are of no use here: there is nothing left to do about them.
 fn leave() {
     if CLAIMED.swap(false, Ordering::SeqCst) {
+        // Cleared first: some multiplexers leave rows of a resized alternate screen behind.
         let _ = execute!(
             io::stdout(),
             EndSynchronizedUpdate,
+            Clear(ClearType::All),
             DisableBracketedPaste,
             LeaveAlternateScreen,
             Show

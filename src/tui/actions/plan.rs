@@ -4,8 +4,8 @@ use super::{focus, lines};
 use crate::tui::keymap::Action;
 use crate::tui::overlay::{Overlay, Pick, Purpose, TextField};
 use crate::tui::plan_editor::Field;
-use crate::tui::runs::TableView;
 use crate::tui::state::{Panel, Source, State, Sweep};
+use crate::tui::table_view::TableView;
 use crate::tui::update::Effect;
 
 pub(super) fn apply(state: &mut State, action: Action) -> Vec<Effect> {

@@ -18,7 +18,7 @@ use ratatui::widgets::Widget;
 use ratatui::widgets::canvas::{Canvas, Line, Points};
 
 use crate::report::series::{Quantity, Series};
-use crate::tui::runs::figure;
+use crate::tui::figures::figure;
 use crate::tui::theme::{Role, Theme};
 use crate::tui::view::clipped;
 

@@ -3,9 +3,10 @@
 use ratatui::layout::Rect;
 
 use crate::lab::Spread;
+use crate::tui::figures::{figure, mebibytes};
 use crate::tui::layout;
 use crate::tui::overlay::Overlay;
-use crate::tui::runs::{RunRow, Status, figure, mebibytes};
+use crate::tui::runs::{RunRow, Status};
 use crate::tui::state::State;
 use crate::tui::view::wrapped;
 

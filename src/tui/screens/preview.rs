@@ -6,10 +6,10 @@ use ratatui::text::{Line, Span};
 
 use crate::lab::NRule;
 use crate::preview::{Picture, legend_bar};
+use crate::tui::figures::{figure, mebibytes};
 use crate::tui::layout;
 use crate::tui::picture::{Figures, Wish};
 use crate::tui::plan_editor::{accel_label, kernel_label};
-use crate::tui::runs::{figure, mebibytes};
 use crate::tui::state::State;
 use crate::tui::theme::Role;
 use crate::tui::view::{clipped, panel, wrapped};

@@ -6,7 +6,8 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 
-use crate::tui::runs::{Column, RunRow, Status, TableView};
+use crate::tui::runs::{RunRow, Status};
+use crate::tui::table_view::{Column, TableView};
 use crate::tui::theme::{Role, Theme};
 use crate::tui::view::{clipped, panel};
 

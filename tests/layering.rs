@@ -63,7 +63,8 @@ fn every_room_uses_only_lower_rooms() {
     let mut wrong = Vec::new();
     for (path, text) in sources() {
         let room = room_of(&path);
-        if room == "main" || room == "lib" {
+        // The program, the map and the build script stand outside the rooms.
+        if ["main", "lib", "build"].contains(&room.as_str()) {
             continue;
         }
         let Some(height) = ROOMS.iter().position(|r| *r == room) else {

@@ -5,7 +5,7 @@ use std::env;
 use std::process::Command;
 
 fn main() {
-    println!("cargo::rerun-if-changed=build.rs");
+    println!("cargo::rerun-if-changed=src/build.rs");
     let release = env::var("PROFILE").is_ok_and(|profile| profile == "release");
     // Only in release builds: elsewhere each commit would compile everything again.
     let (commit, dirty) = if release { state() } else { <_>::default() };

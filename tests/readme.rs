@@ -11,9 +11,13 @@ const README: &str = include_str!("../README.md");
 
 /// Whether `name` stands in code marks: alone, or followed by its size or parameters.
 fn told(name: &str) -> bool {
-    [format!("`{name}`"), format!("`{name}:"), format!("`{name}[")]
-        .iter()
-        .any(|form| README.contains(form.as_str()))
+    [
+        format!("`{name}`"),
+        format!("`{name}:"),
+        format!("`{name}["),
+    ]
+    .iter()
+    .any(|form| README.contains(form.as_str()))
 }
 
 #[test]
@@ -31,8 +35,14 @@ fn the_readme_names_every_entry_of_every_registry() {
 #[test]
 fn every_picture_of_the_readme_is_in_the_repository() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
-    let links = README.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+    let links = README
+        .split("](")
+        .skip(1)
+        .filter_map(|rest| rest.split(')').next());
     for link in links.filter(|link| !link.contains("://")) {
-        assert!(root.join(link).exists(), "the README links to '{link}', which is not there");
+        assert!(
+            root.join(link).exists(),
+            "the README links to '{link}', which is not there"
+        );
     }
 }

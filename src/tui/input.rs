@@ -1,4 +1,7 @@
-//! The input thread: waits for keys, and wakes the UI thread at once.
+//! The input thread waits for keys and wakes the UI thread at once; the signal thread does the same for signals.
+//!
+//! Two threads, because a terminal that has gone away can hold the first one inside the terminal library for ever: the
+//! signal that tells of it must still be heard.
 
 use std::sync::mpsc::Sender;
 use std::thread;
@@ -10,27 +13,33 @@ use super::app::Message;
 use super::signals::Signals;
 use super::update::Event;
 
-/// How often signals are looked at while no key comes.
+/// How often signals are looked at.
 const GLANCE: Duration = Duration::from_millis(100);
 
-/// Starts the thread. It ends with the channel, or when the terminal is gone.
+/// Starts both threads. They end with the channel; the first one also when the terminal is gone.
 pub(super) fn spawn(signals: Signals, to: Sender<Message>) {
+    let keys = to.clone();
     thread::spawn(move || {
         loop {
-            let message = match event::poll(GLANCE) {
-                Ok(true) => match event::read() {
-                    Ok(event) => translated(event),
-                    Err(error) => Some(Message::InputLost(error)),
-                },
-                Ok(false) => None,
+            let message = match event::read() {
+                Ok(event) => translated(event),
                 Err(error) => Some(Message::InputLost(error)),
             };
-            let signal = signals.take().map(Message::Signal);
-            for message in [message, signal].into_iter().flatten() {
+            if let Some(message) = message {
                 let lost = matches!(message, Message::InputLost(_));
-                if to.send(message).is_err() || lost {
+                if keys.send(message).is_err() || lost {
                     return;
                 }
+            }
+        }
+    });
+    thread::spawn(move || {
+        loop {
+            thread::sleep(GLANCE);
+            if let Some(signal) = signals.take()
+                && to.send(Message::Signal(signal)).is_err()
+            {
+                return;
             }
         }
     });

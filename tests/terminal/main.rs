@@ -161,6 +161,12 @@ fn signals_to_end_restore_the_terminal() {
 }
 
 #[test]
+fn a_terminal_that_is_taken_away_ends_the_program() {
+    let dir = folder();
+    assert!(pty::ends_when_hung_up(&["teapot:2"], dir.path()));
+}
+
+#[test]
 fn without_colour_no_colour_is_sent_and_the_picture_is_there() {
     let dir = folder();
     let mut terminal = Terminal::start(&["teapot:2"], &[("NO_COLOR", "1")], dir.path(), 80, 24);

@@ -191,6 +191,49 @@ impl Terminal {
     }
 }
 
+/// Starts the program, waits until it has drawn something, and takes the terminal away as a closed window does; says
+/// whether the program ended.
+pub fn ends_when_hung_up(args: &[&str], dir: &Path) -> bool {
+    let pair = native_pty_system()
+        .openpty(size(80, 24))
+        .expect("a pseudo-terminal can be had");
+    let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_raylab"));
+    command.args(args);
+    command.cwd(dir);
+    command.env("TERM", "xterm-256color");
+    let mut child = pair
+        .slave
+        .spawn_command(command)
+        .expect("the program starts");
+    drop(pair.slave);
+    let mut reader = pair
+        .master
+        .try_clone_reader()
+        .expect("the pseudo-terminal can be read");
+    let mut drawn = Vec::new();
+    let mut buffer = [0; 8192];
+    while !String::from_utf8_lossy(&drawn).contains("quit") {
+        let count = reader.read(&mut buffer).expect("the program draws");
+        drawn.extend_from_slice(&buffer[..count]);
+    }
+    drop((reader, pair.master));
+    let deadline = Instant::now() + PATIENCE;
+    loop {
+        if child
+            .try_wait()
+            .expect("the program can be waited for")
+            .is_some()
+        {
+            return true;
+        }
+        if Instant::now() > deadline {
+            child.kill().expect("the program can be killed");
+            return false;
+        }
+        thread::sleep(Duration::from_millis(20));
+    }
+}
+
 impl Drop for Terminal {
     fn drop(&mut self) {
         // A failed test must not leave the program running; one that has ended cannot be killed, which is fine.

@@ -204,7 +204,7 @@ mod tests {
                     );
                     assert_eq!(tested as u64, counts[0].tests);
                     // The last test that became the nearest is the answer.
-                    let last = all().filter(|t| t.outcome == Outcome::Nearest).last();
+                    let last = all().filter(|t| t.outcome == Outcome::Nearest).next_back();
                     assert_eq!(
                         last.map(|t| (t.prim, t.t)),
                         record
@@ -243,7 +243,7 @@ mod tests {
                 for visit in accelerator.inspect(&ray).visits {
                     let bounds = visit.bounds.expect("each of these knows its places");
                     // The ends of the interval are computed; its middle, seen from far, is as sure as its point.
-                    let middle = (visit.entry + visit.exit) / 2.0;
+                    let middle = visit.entry.midpoint(visit.exit);
                     let point = ray.origin.as_dvec3() + ray.dir.as_dvec3() * middle;
                     let error = 1e-5 * (1.0 + point.abs().max_element());
                     let inside = point.cmpge(bounds.min.as_dvec3() - error)

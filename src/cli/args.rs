@@ -33,6 +33,8 @@ pub enum Command {
     Render(RenderArgs),
     /// Measure every combination of scenes, accelerators, resolutions, kernels, ray sets and thread counts
     Sweep(SweepArgs),
+    /// Show every step of one ray: cells or nodes, tests, hit
+    Inspect(InspectArgs),
     /// Write a ray set to a file
     Rays(RaysArgs),
     /// Trace the rays of a file and write their hits
@@ -121,6 +123,17 @@ pub struct RenderArgs {
     /// Colours of the terminal: auto, true, 256, 16 or none
     #[arg(long, default_value = "auto", value_name = "COLORS")]
     pub color: String,
+    /// Another view
+    #[command(flatten)]
+    pub camera: CameraArgs,
+    /// The configuration that renders
+    #[command(flatten)]
+    pub config: ConfigArgs,
+}
+
+/// What is changed of the scene's camera.
+#[derive(Debug, Args)]
+pub struct CameraArgs {
     /// Where the camera stands
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vec3, allow_hyphen_values = true)]
     pub eye: Option<Vec3>,
@@ -130,7 +143,29 @@ pub struct RenderArgs {
     /// Vertical field of view
     #[arg(long, value_name = "DEGREES", value_parser = parse_fov)]
     pub fov: Option<f32>,
-    /// The configuration that renders
+}
+
+/// Arguments of `inspect`.
+#[derive(Debug, Args)]
+pub struct InspectArgs {
+    /// The scene
+    pub scene: String,
+    /// The ray through the centre of this pixel; 0,0 is the upper left one
+    #[arg(long, value_name = "X,Y", value_parser = parse_pixel, required_unless_present = "origin")]
+    pub pixel: Option<(u32, u32)>,
+    /// Pixels of the picture that `--pixel` is in [default: 960x720]
+    #[arg(long, value_name = "WxH", value_parser = shade::parse_size)]
+    pub size: Option<(u32, u32)>,
+    /// The ray from this point along `--dir`, instead of a pixel's
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_vec3, allow_hyphen_values = true, requires = "dir", conflicts_with_all = ["pixel", "size", "eye", "at", "fov"])]
+    pub origin: Option<Vec3>,
+    /// Direction of the ray from `--origin`, and the unit of t
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_vec3, allow_hyphen_values = true, requires = "origin")]
+    pub dir: Option<Vec3>,
+    /// Another view
+    #[command(flatten)]
+    pub camera: CameraArgs,
+    /// The configuration that is followed
     #[command(flatten)]
     pub config: ConfigArgs,
 }
@@ -248,6 +283,13 @@ fn parse_vec3(text: &str) -> Result<Vec3, String> {
         .map_err(|p| format!("{} numbers where three are needed", p.len()))
 }
 
+/// Reads `x,y`, both from 0.
+fn parse_pixel(text: &str) -> Result<(u32, u32), String> {
+    text.split_once(',')
+        .and_then(|(x, y)| Some((x.trim().parse().ok()?, y.trim().parse().ok()?)))
+        .ok_or_else(|| "write a column and a row counted from 0, e.g. 320,240".to_owned())
+}
+
 /// Reads degrees between 0.1 and 179.
 fn parse_fov(text: &str) -> Result<f32, String> {
     text.parse()
@@ -280,5 +322,9 @@ mod tests {
             assert!(parse_vec3(bad).is_err(), "{bad}");
         }
         assert!(parse_fov("0").is_err() && parse_fov("45").is_ok());
+        assert_eq!(parse_pixel("3, 40"), Ok((3, 40)));
+        for bad in ["3", "3,-1", "3,4,5", "a,b", ""] {
+            assert!(parse_pixel(bad).is_err(), "{bad}");
+        }
     }
 }

@@ -12,6 +12,7 @@ mod args;
 mod choices;
 mod export;
 mod failure;
+mod inspect;
 mod interrupt;
 mod list;
 mod progress;
@@ -49,6 +50,7 @@ pub fn run(cli: Cli) -> Result<(), Failure> {
         None => lab(cli.scenes),
         Some(Command::List(args)) => list::run(&args),
         Some(Command::Render(args)) => render::run(&args),
+        Some(Command::Inspect(args)) => inspect::run(&args),
         Some(Command::Rays(args)) => rays::write(&args),
         Some(Command::Trace(args)) => rays::trace(&args),
         Some(Command::Completions { shell }) => completions(shell),

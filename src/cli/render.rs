@@ -9,12 +9,9 @@ use crate::scene::{Camera, Scene};
 use crate::shade::{self, Channel, Rendered, View};
 
 use super::args::RenderArgs;
-use super::session::{Built, Config, load};
+use super::session::{Built, Config, PNG_SIZE, load};
 use super::table::significant;
 use super::{Failure, print};
-
-/// Pixels of a PNG when no size is given.
-const PNG_SIZE: (u32, u32) = (960, 720);
 
 /// Columns and rows when no size is given and standard output is no terminal.
 const CELLS: (u16, u16) = (80, 24);
@@ -40,7 +37,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let scene = load(&args.scene, args.config.quiet)?;
     let pool = config.pool()?;
     let built = pool.install(|| config.build(&scene))?;
-    let camera = camera(&scene, args);
+    let camera = args.camera.of(&scene);
     let rendered = pool.install(|| picture(&scene, &camera, &built, channel, &target));
 
     match &target {
@@ -143,16 +140,6 @@ fn terminal_cells() -> (u16, u16) {
             (columns, rows.saturating_sub(2).max(1))
         }
         _ => CELLS,
-    }
-}
-
-/// The scene's camera with what the command line changes.
-fn camera(scene: &Scene, args: &RenderArgs) -> Camera {
-    Camera {
-        eye: args.eye.unwrap_or(scene.camera.eye),
-        at: args.at.unwrap_or(scene.camera.at),
-        fov_deg: args.fov.unwrap_or(scene.camera.fov_deg),
-        ..scene.camera
     }
 }
 

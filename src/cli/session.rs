@@ -1,4 +1,4 @@
-//! What `render` and `trace` share: a scene, one configuration, the structure built for it, and threads.
+//! What `render`, `inspect` and `trace` share: a scene, one configuration, the structure built for it, and threads.
 
 use std::time::Instant;
 
@@ -8,11 +8,14 @@ use crate::accel::{self, Accelerator};
 use crate::kernel;
 use crate::lab::{self, NRule, Plan};
 use crate::registry::Choice;
-use crate::scene::{self, Scene};
+use crate::scene::{self, Camera, Scene};
 
 use super::Failure;
-use super::args::ConfigArgs;
+use super::args::{CameraArgs, ConfigArgs};
 use super::choices::thread_count;
+
+/// Pixels of a picture when no size is given.
+pub const PNG_SIZE: (u32, u32) = (960, 720);
 
 /// One configuration as chosen on the command line.
 pub struct Config {
@@ -92,6 +95,18 @@ impl Config {
             n,
             build_ms: start.elapsed().as_secs_f64() * 1e3,
         })
+    }
+}
+
+impl CameraArgs {
+    /// The scene's camera with what the command line changes.
+    pub fn of(&self, scene: &Scene) -> Camera {
+        Camera {
+            eye: self.eye.unwrap_or(scene.camera.eye),
+            at: self.at.unwrap_or(scene.camera.at),
+            fov_deg: self.fov.unwrap_or(scene.camera.fov_deg),
+            ..scene.camera
+        }
     }
 }
 

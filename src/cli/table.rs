@@ -1,4 +1,4 @@
-//! Runs as a table for people.
+//! Tables for people.
 
 use crate::report::Run;
 
@@ -8,22 +8,18 @@ pub fn runs(runs: &[Run]) -> String {
         "scene", "accel", "n", "kernel", "rays", "thr", "Mrays/s", "95 %", "steps", "tests",
         "build ms", "MB", "valid",
     ];
-    let mut rows: Vec<Vec<String>> = vec![header.map(str::to_owned).to_vec()];
+    let sides = std::array::from_fn(|column| match column {
+        0 | 1 | 3 | 4 | 12 => Side::Left,
+        _ => Side::Right,
+    });
+    let mut rows = vec![header.map(str::to_owned)];
     rows.extend(runs.iter().map(row));
-    let widths: Vec<usize> = (0..header.len())
-        .map(|column| {
-            rows.iter()
-                .map(|row| row[column].chars().count())
-                .max()
-                .unwrap_or(0)
-        })
-        .collect();
-    rows.iter().map(|row| aligned(row, &widths)).collect()
+    columns(&rows, &sides)
 }
 
-fn row(run: &Run) -> Vec<String> {
+fn row(run: &Run) -> [String; 13] {
     let speed = &run.mrays_per_s;
-    vec![
+    [
         run.scene.clone(),
         run.accel.clone(),
         run.n.map_or_else(|| "-".to_owned(), |n| n.to_string()),
@@ -44,18 +40,27 @@ fn row(run: &Run) -> Vec<String> {
     ]
 }
 
-/// Words to the left, numbers to the right.
-fn aligned(row: &[String], widths: &[usize]) -> String {
-    let cells = row
-        .iter()
-        .zip(widths)
-        .enumerate()
-        .map(|(column, (cell, &width))| match column {
-            0 | 1 | 3 | 4 | 12 => format!("{cell:<width$}"),
-            _ => format!("{cell:>width$}"),
+/// The side of its column that a cell leans to: words to the left, numbers to the right.
+#[derive(Debug, Clone, Copy)]
+pub enum Side {
+    Left,
+    Right,
+}
+
+/// A line a row, columns as wide as their widest cell.
+pub fn columns<const N: usize>(rows: &[[String; N]], sides: &[Side; N]) -> String {
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max();
+    let widths: [usize; N] = std::array::from_fn(|column| width(column).unwrap_or(0));
+    let line = |row: &[String; N]| {
+        let cells = row.iter().zip(sides).zip(widths);
+        let cells = cells.map(|((cell, side), width)| match side {
+            Side::Left => format!("{cell:<width$}"),
+            Side::Right => format!("{cell:>width$}"),
         });
-    let line = cells.collect::<Vec<_>>().join("  ");
-    format!("{}\n", line.trim_end())
+        let line = cells.collect::<Vec<_>>().join("  ");
+        format!("{}\n", line.trim_end())
+    };
+    rows.iter().map(line).collect()
 }
 
 /// Three significant digits, without exponents.
@@ -83,10 +88,8 @@ mod tests {
 
     #[test]
     fn columns_are_aligned() {
-        let text = aligned(
-            &["a".to_owned(), "bb".to_owned(), "7".to_owned()],
-            &[3, 2, 4],
-        );
-        assert_eq!(text, "a    bb     7\n");
+        let rows = [["a", "bb", "7"], ["ccc", "d", "1234"]].map(|row| row.map(str::to_owned));
+        let text = columns(&rows, &[Side::Left, Side::Left, Side::Right]);
+        assert_eq!(text, "a    bb     7\nccc  d   1234\n");
     }
 }

@@ -22,12 +22,15 @@ use crate::geometry::Ray;
 use crate::registry::{ChoiceError, ParamSpec};
 use crate::scene::Scene;
 
+mod ao;
 mod batch;
 mod bounce;
+mod edge;
 pub mod files;
 mod first_hit;
 #[cfg(test)]
 mod fixture;
+mod grazing;
 mod primary;
 mod random;
 mod sample;
@@ -104,8 +107,11 @@ pub struct Rays {
 pub const RAY_SETS: &[RaySetEntry] = &[
     primary::ENTRY,
     shadow::ENTRY,
+    ao::ENTRY,
     bounce::ENTRY,
     random::ENTRY,
+    grazing::ENTRY,
+    edge::ENTRY,
     files::ENTRY,
 ];
 
@@ -273,7 +279,7 @@ mod tests {
     #[test]
     fn another_seed_gives_other_random_rays() {
         let scene = fixture::room();
-        for name in ["bounce", "random"] {
+        for name in ["ao", "bounce", "random", "grazing", "edge"] {
             let [a, b] = [1, 2].map(|seed| ray_set(&scene, name, 1000, seed).unwrap().rays);
             assert_ne!(a, b, "{name}");
         }
@@ -284,9 +290,9 @@ mod tests {
         let scene = fixture::empty();
         for set in RAY_SETS.iter().filter(|s| s.argument.is_empty()) {
             let made = ray_set(&scene, set.name, 100, 1).unwrap();
-            let secondary = matches!(set.name, "shadow" | "bounce");
-            assert_eq!(made.rays.is_empty(), secondary, "{}", set.name);
-            assert!(!secondary || !made.warnings.is_empty());
+            let aimed = matches!(set.name, "shadow" | "ao" | "bounce" | "grazing" | "edge");
+            assert_eq!(made.rays.is_empty(), aimed, "{}", set.name);
+            assert!(!aimed || !made.warnings.is_empty());
         }
     }
 

@@ -25,6 +25,9 @@ pub enum LabError {
         /// What is missing.
         what: &'static str,
     },
+    /// A distance that a scene cannot be moved by.
+    #[error("a scene cannot be moved by {0}; an offset is a finite number, at least 0")]
+    Offset(String),
     /// A thread count that makes no sense.
     #[error("{0} threads were asked for; ask for 1 to {max}", max = super::MAX_THREADS)]
     Threads(usize),

@@ -112,7 +112,13 @@ impl Live {
         Ok(live)
     }
 
-    fn rays(&self) -> &[Ray] {
+    /// The structure.
+    pub fn accel(&self) -> &dyn Accelerator {
+        &*self.accel
+    }
+
+    /// The rays of a sample.
+    pub fn rays(&self) -> &[Ray] {
         self.rays.as_deref().unwrap_or(&self.set.rays)
     }
 

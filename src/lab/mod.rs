@@ -17,6 +17,7 @@
 //! a sample that costs a few tenths of a percent. Repeated passes find a small ray set in the cache. The nominal cost that
 //! decides whether a run takes a subset of the rays ignores how fast the machine is.
 
+mod accuracy;
 mod answers;
 mod control;
 mod error;
@@ -35,6 +36,9 @@ mod spread;
 mod subset;
 mod sweep;
 
+pub use accuracy::{
+    Accuracy, AccuracyBounds, AccuracyEvent, AccuracyPlan, AccuracyRecord, UlpSpread, accuracy,
+};
 pub use control::Control;
 pub use error::LabError;
 pub use event::Event;

@@ -17,8 +17,9 @@ mod run;
 pub mod series;
 mod table;
 
+pub use crate::lab::{Accuracy, AccuracyBounds, UlpSpread};
 pub use bundle::Bundle;
 pub use error::ReportError;
 pub use export::{ExportError, FORMATS, FormatEntry, export};
-pub use model::{Accuracy, AccuracyBounds, Provenance, Report, Run, SceneFacts, UlpSpread};
+pub use model::{Provenance, Report, Run, SceneFacts};
 pub use read::{SCHEMA_JSON, replace};

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::accel::{Prediction, StructureStats};
-use crate::lab::{Checksum, PerRay, Plan, StopReason};
+use crate::lab::{Accuracy, Checksum, PerRay, Plan, StopReason};
 use crate::registry::Params;
 use crate::stats::Summary;
 
@@ -127,47 +127,4 @@ pub struct Run {
     pub accuracy: Option<Accuracy>,
     /// What a reader should know.
     pub warnings: Vec<String>,
-}
-
-/// How often a kernel was wrong on some rays, by the oracle.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct Accuracy {
-    /// Rays that were judged.
-    pub rays: u64,
-    /// The ray hits, the method misses.
-    pub leaks: u64,
-    /// The method hits, the ray misses.
-    pub phantoms: u64,
-    /// Another triangle than any nearest one, at another t.
-    pub wrong_surface: u64,
-    /// Another triangle than any nearest one, on the same surface.
-    pub neighbour_swaps: u64,
-    /// Error of t over right hits, in units of the last place.
-    pub t_ulp: UlpSpread,
-    /// Upper ends of the 95 % intervals of the rates.
-    pub upper95: AccuracyBounds,
-}
-
-/// Percentiles of an error in units of the last place.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct UlpSpread {
-    /// Median.
-    pub p50: f64,
-    /// 99th percentile.
-    pub p99: f64,
-    /// Greatest.
-    pub max: f64,
-}
-
-/// Upper bounds of rates, 0 to 1.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct AccuracyBounds {
-    /// Of leaks.
-    pub leaks: f64,
-    /// Of phantoms.
-    pub phantoms: f64,
-    /// Of wrong surfaces.
-    pub wrong_surface: f64,
-    /// Of neighbour swaps.
-    pub neighbour_swaps: f64,
 }

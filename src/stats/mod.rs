@@ -5,11 +5,13 @@
 
 mod bootstrap;
 mod order;
+mod proportion;
 
 use serde::{Deserialize, Serialize};
 
 pub use bootstrap::{Interval, median_interval, ratio_interval};
 pub use order::{mad, median, percentile};
+pub use proportion::upper95;
 
 /// Median, 95 % bootstrap interval and the raw samples they come from.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

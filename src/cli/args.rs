@@ -35,6 +35,8 @@ pub enum Command {
     Sweep(SweepArgs),
     /// Show every step of one ray: cells or nodes, tests, hit
     Inspect(InspectArgs),
+    /// Count what each kernel decides wrongly, by exact arithmetic, beside its speed
+    Accuracy(AccuracyArgs),
     /// Write a ray set to a file
     Rays(RaysArgs),
     /// Trace the rays of a file and write their hits
@@ -206,6 +208,53 @@ pub struct SweepArgs {
     /// Go on with the interrupted sweep in this bundle; its own plan counts
     #[arg(long, value_name = "DIR", conflicts_with_all = ["scene", "accel", "n", "kernel", "rays", "threads", "set", "out", "quick"])]
     pub resume: Option<PathBuf>,
+    /// Print the report to standard output
+    #[arg(long)]
+    pub json: bool,
+    /// Seed of everything random
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    pub seed: u64,
+    /// Print nothing but the result
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// Arguments of `accuracy`.
+#[derive(Debug, Args)]
+pub struct AccuracyArgs {
+    /// The scenes
+    #[arg(required = true, value_name = "SCENE")]
+    pub scenes: Vec<String>,
+    /// Kernels, separated by commas [default: all]
+    #[arg(long, value_name = "KERNELS")]
+    pub kernel: Vec<String>,
+    /// Accelerators, separated by commas [default: the fastest own one]
+    #[arg(long, value_name = "ACCELS")]
+    pub accel: Vec<String>,
+    /// Grid resolutions, for accelerators that have one
+    #[arg(long, value_name = "RANGE", default_value = "auto")]
+    pub n: String,
+    /// Ray sets, separated by commas [default: edge,random]
+    #[arg(long, value_name = "SETS")]
+    pub rays: Vec<String>,
+    /// How far scene and rays are moved from their place along each axis, separated by commas
+    #[arg(long, value_name = "OFFSETS", default_value = "0,1e4")]
+    pub offset: String,
+    /// Another axis: values of a parameter of the kernels or accelerators, e.g. `eps=1e-7,1e-5,1e-3`
+    #[arg(long, value_name = "KEY=V1,V2")]
+    pub set: Vec<String>,
+    /// Rays of a set
+    #[arg(long, value_name = "COUNT")]
+    pub rays_count: Option<usize>,
+    /// Threads: a number, or `max`
+    #[arg(long, value_name = "COUNT", default_value = "max")]
+    pub threads: String,
+    /// Fewer rays and samples: a first look
+    #[arg(long)]
+    pub quick: bool,
+    /// Write report and plots into this directory
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
     /// Print the report to standard output
     #[arg(long)]
     pub json: bool,

@@ -8,6 +8,7 @@ use clap::{CommandFactory, Parser};
 use crate::scene;
 use crate::tui::{self, TuiError};
 
+mod accuracy;
 mod args;
 mod choices;
 mod export;
@@ -55,6 +56,7 @@ pub fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Trace(args)) => rays::trace(&args),
         Some(Command::Completions { shell }) => completions(shell),
         Some(Command::Man) => manual(),
+        Some(Command::Accuracy(args)) => accuracy::run(&args),
         Some(Command::Sweep(args)) => sweep::run(&args),
         Some(Command::Report(args)) => export::run(&args),
     }

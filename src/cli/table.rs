@@ -1,6 +1,7 @@
 //! Tables for people.
 
 use crate::report::Run;
+use crate::report::series::{accel_label, kernel_label};
 
 /// One row a run: configuration, speed with its interval, work a ray, build, memory, and whether the answers are right.
 pub fn runs(runs: &[Run]) -> String {
@@ -38,6 +39,62 @@ fn row(run: &Run) -> [String; 13] {
             (false, _) => "NO".to_owned(),
         },
     ]
+}
+
+/// One row a judged run: configuration, speed, each rate in percent with its upper 95 % bound, error of t.
+pub fn accuracy(runs: &[Run]) -> String {
+    let header = [
+        "scene",
+        "offset",
+        "rays",
+        "accel",
+        "kernel",
+        "Mrays/s",
+        "leak %",
+        "phantom %",
+        "wrong surface %",
+        "swap %",
+        "occl. differs %",
+        "t ulp p50",
+        "p99",
+        "max",
+    ];
+    let sides = std::array::from_fn(|column| match column {
+        0 | 2 | 3 | 4 => Side::Left,
+        _ => Side::Right,
+    });
+    let mut rows = vec![header.map(str::to_owned)];
+    rows.extend(runs.iter().filter_map(judged));
+    columns(&rows, &sides)
+}
+
+/// The cells of a judged run; `None` where it was not judged.
+fn judged(run: &Run) -> Option<[String; 14]> {
+    let found = run.accuracy?;
+    let rate = |seen: u64, bound: f64| {
+        let rate = 100.0 * seen as f64 / found.rays.max(1) as f64;
+        format!("{} <={}", significant(rate), significant(100.0 * bound))
+    };
+    let bounds = found.upper95;
+    Some([
+        run.scene.clone(),
+        found.offset.to_string(),
+        run.rays.clone(),
+        accel_label(run),
+        kernel_label(run),
+        significant(run.mrays_per_s.median),
+        rate(found.leaks, bounds.leaks),
+        rate(found.phantoms, bounds.phantoms),
+        rate(found.wrong_surface, bounds.wrong_surface),
+        rate(found.neighbour_swaps, bounds.neighbour_swaps),
+        rate(
+            found.occlusion_disagreements,
+            bounds.occlusion_disagreements,
+        ),
+        significant(found.t_ulp.p50),
+        significant(found.t_ulp.p99),
+        significant(found.t_ulp.max),
+    ])
 }
 
 /// The side of its column that a cell leans to: words to the left, numbers to the right.

@@ -1,7 +1,7 @@
 //! Comma-separated values: one line a run, all figures, units in the names of the columns (RFC 4180).
 
 use super::series::{accel_label, kernel_label};
-use super::{Report, Run};
+use super::{Accuracy, Report, Run};
 
 /// Name of a column and what a run has there.
 type Column = (&'static str, fn(&Run) -> String);
@@ -78,6 +78,22 @@ const COLUMNS: &[Column] = &[
     ("valid", |r| r.valid.to_string()),
     ("checked_rays", |r| r.checked_rays.to_string()),
     ("kernel_errors", |r| r.kernel_errors.to_string()),
+    ("offset", |r| judged(r, |a| a.offset.to_string())),
+    ("judged_rays", |r| judged(r, |a| a.rays.to_string())),
+    ("leaks", |r| judged(r, |a| a.leaks.to_string())),
+    ("phantoms", |r| judged(r, |a| a.phantoms.to_string())),
+    ("wrong_surface", |r| {
+        judged(r, |a| a.wrong_surface.to_string())
+    }),
+    ("neighbour_swaps", |r| {
+        judged(r, |a| a.neighbour_swaps.to_string())
+    }),
+    ("occlusion_disagreements", |r| {
+        judged(r, |a| a.occlusion_disagreements.to_string())
+    }),
+    ("t_ulp_p50", |r| judged(r, |a| real(a.t_ulp.p50))),
+    ("t_ulp_p99", |r| judged(r, |a| real(a.t_ulp.p99))),
+    ("t_ulp_max", |r| judged(r, |a| real(a.t_ulp.max))),
     ("warnings", |r| r.warnings.join("; ")),
 ];
 
@@ -91,6 +107,11 @@ pub(super) fn table(report: &Report) -> String {
         text.push_str("\r\n");
     }
     text
+}
+
+/// A figure of the oracle's; empty where the run was not judged.
+fn judged(run: &Run, figure: fn(&Accuracy) -> String) -> String {
+    run.accuracy.as_ref().map(figure).unwrap_or_default()
 }
 
 fn real(x: f64) -> String {

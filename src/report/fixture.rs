@@ -1,7 +1,7 @@
 //! Reports that look measured, for tests of what is made from reports. Deterministic: no clock, no random source.
 
 use crate::accel::{Prediction, StructureStats};
-use crate::lab::{Budget, Checksum, NRule, PerRay, Plan, Spread, StopReason};
+use crate::lab::{Accuracy, Budget, Checksum, NRule, PerRay, Plan, Spread, StopReason, UlpSpread};
 use crate::registry::Params;
 use crate::stats::Summary;
 
@@ -218,4 +218,28 @@ pub fn teapot() -> Report {
     let mut runs: Vec<Run> = N.iter().map(|&n| run("grid", Some(n))).collect();
     runs.extend(["brute", "kd-tree", "bvh"].map(|accel| run(accel, None)));
     report(runs)
+}
+
+/// A run that was judged: `wrong` of 65,536 edge rays, half of them leaks, at this speed.
+pub fn judged(kernel: &str, offset: f64, speed: f64, wrong: u64) -> Run {
+    let words = format!("{kernel}/{offset}");
+    Run {
+        id: format!("{:012x}", (noise(&words) * 2.8e14) as u64),
+        kernel: kernel.to_owned(),
+        ray_count: 65_536,
+        mrays_per_s: summary(speed, 0.03, &words),
+        accuracy: Some(Accuracy {
+            offset,
+            rays: 65_536,
+            leaks: wrong / 2,
+            wrong_surface: wrong - wrong / 2,
+            t_ulp: UlpSpread {
+                p50: 0.4,
+                p99: 2.0 + wrong as f64,
+                max: 9.0 + 3.0 * wrong as f64,
+            },
+            ..Accuracy::default()
+        }),
+        ..run_of("teapot", 6_320, "edge", 1, "bvh", None)
+    }
 }

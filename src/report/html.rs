@@ -1,6 +1,7 @@
 //! One self-contained page: figures, tables, provenance, warnings. It opens without a network and follows the reader's
 //! preference for light or dark.
 
+use super::judged::{Course, courses, offsets};
 use super::plot::text::{css, escape};
 use super::plot::{self, Kind, Subject};
 use super::series::panels;
@@ -48,7 +49,10 @@ pub(super) fn page(report: &Report) -> Result<String, ExportError> {
         html.push("</ul></nav>\n".to_owned());
     }
     html.extend(plot::svg(report, &Subject::Overview)?);
-    if keys.is_empty() {
+    for course in courses(&report.runs) {
+        html.push(accuracy(report, &course)?);
+    }
+    if report.runs.is_empty() {
         html.push("<p>No runs.</p>\n".to_owned());
     }
     for (i, key) in keys.iter().enumerate() {
@@ -72,6 +76,18 @@ pub(super) fn page(report: &Report) -> Result<String, ExportError> {
     }
     html.push(background(report));
     html.push("</body>\n</html>\n".to_owned());
+    Ok(html.concat())
+}
+
+/// The charts and the table of one course that the oracle judged.
+fn accuracy(report: &Report, course: &Course) -> Result<String, ExportError> {
+    let title = escape(&course.to_string());
+    let mut html = vec![format!("<h2>Accuracy beside speed: {title}</h2>\n")];
+    for offset in offsets(&report.runs, course) {
+        html.extend(plot::svg(report, &Subject::Pareto(course.clone(), offset))?);
+    }
+    html.extend(plot::svg(report, &Subject::Drift(course.clone()))?);
+    html.push(tabulated(&table::accuracy(report, course)));
     Ok(html.concat())
 }
 

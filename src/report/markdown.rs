@@ -1,6 +1,7 @@
 //! Tables in Markdown (GitHub's dialect): the fastest run of each accelerator, then what a reader must know.
 
 use super::Report;
+use super::judged::courses;
 use super::series::panels;
 use super::table::{self, Table, WORDS};
 
@@ -13,6 +14,11 @@ pub(super) fn page(report: &Report) -> String {
         text.push(format!("\n## {}\n\n", escaped(&key.to_string())));
         text.push("The fastest run of each accelerator.\n\n".to_owned());
         text.push(tabulated(&fastest));
+    }
+    for course in courses(&report.runs) {
+        let title = escaped(&course.to_string());
+        text.push(format!("\n## Accuracy beside speed: {title}\n\n"));
+        text.push(tabulated(&table::accuracy(report, &course)));
     }
     let warnings = table::warnings(report);
     if !warnings.is_empty() {

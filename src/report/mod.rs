@@ -8,6 +8,7 @@ mod export;
 pub(crate) mod fixture;
 mod html;
 mod journal;
+pub mod judged;
 mod markdown;
 mod model;
 pub mod plot;

@@ -169,11 +169,12 @@ pub struct Series {
     pub predicted: Vec<(f64, f64)>,
 }
 
-/// The panels of `runs`, in the order in which they first occur.
+/// The panels of `runs`, in the order in which they first occur. Runs that the oracle judged are not among them: their
+/// charts are those of [`super::judged`].
 #[must_use]
 pub fn panels(runs: &[Run]) -> Vec<PanelKey> {
     let mut panels = Vec::new();
-    for run in runs {
+    for run in runs.iter().filter(|run| run.accuracy.is_none()) {
         let key = PanelKey::of(run);
         if !panels.contains(&key) {
             panels.push(key);

@@ -1,5 +1,6 @@
 //! What pages of a report tabulate: runs, provenance, how it was measured. Texts without markup; the formats add theirs.
 
+use super::judged::{Course, offsets, points};
 use super::plot::text::{measured, number};
 use super::series::{PanelKey, accel_label};
 use super::{Report, Run};
@@ -95,6 +96,45 @@ fn row(run: &Run, top: f64) -> Vec<String> {
         value(run.per_ray.tests.mean),
         if run.valid { "yes" } else { "NO" }.to_owned(),
     ]
+}
+
+/// What the oracle found on one course: rates in percent with their upper 95 % bounds, one row a method and offset.
+pub(super) fn accuracy(report: &Report, course: &Course) -> Table {
+    let mut rows = Vec::new();
+    for offset in offsets(&report.runs, course) {
+        for point in points(&report.runs, course, offset) {
+            let a = point.accuracy;
+            let rate = |seen: u64, bound: f64| {
+                let rate = 100.0 * seen as f64 / a.rays.max(1) as f64;
+                format!("{} (≤ {})", measured(rate), measured(100.0 * bound))
+            };
+            rows.push(vec![
+                point.label,
+                number(offset),
+                measured(point.speed[0]),
+                rate(a.leaks, a.upper95.leaks),
+                rate(a.phantoms, a.upper95.phantoms),
+                rate(a.wrong_surface, a.upper95.wrong_surface),
+                rate(a.neighbour_swaps, a.upper95.neighbour_swaps),
+                rate(a.occlusion_disagreements, a.upper95.occlusion_disagreements),
+                [a.t_ulp.p50, a.t_ulp.p99, a.t_ulp.max]
+                    .map(measured)
+                    .join(" / "),
+            ]);
+        }
+    }
+    let head = vec![
+        "kernel",
+        "offset",
+        "Mrays/s",
+        "leaks %",
+        "phantoms %",
+        "wrong surface %",
+        "neighbour swaps %",
+        "occlusion differs %",
+        "t ulp p50 / p99 / max",
+    ];
+    Table { head, rows }
 }
 
 /// A measured number, or a dash where it is none.

@@ -10,8 +10,9 @@
 //! direction from the target to the origin is cosine-weighted around the normal of one of its triangles, on the side
 //! that looks away from the box's centre, so that on a closed mesh mostly the target is what the ray meets first.
 //!
-//! Target and direction are rounded to `f32`, so a ray passes its edge within about an ulp of the target's coordinates,
-//! on either side or exactly through it; what it really hits, the oracle says.
+//! Origin and direction are rounded to `f32`, the target is not: wherever the mesh lies, a ray passes its edge within an
+//! ulp of its length, on either side or exactly through it; what it really hits, the oracle says. `t` is 1 at the target
+//! and ends at 1 + 1/64: a ray that slips through is then a leak, not a hit on the far side.
 
 use rand_core::Rng;
 use rand_pcg::Pcg32;
@@ -51,6 +52,9 @@ pub(super) const ENTRY: RaySetEntry = RaySetEntry {
     },
 };
 
+/// Where a ray ends: 1/32 of the box's diagonal behind its target.
+const BEHIND: f32 = 1.0 + 1.0 / 64.0;
+
 /// An edge by the indices of its ends, the lower first, and one of its triangles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Edge {
@@ -86,7 +90,6 @@ fn aimed(mesh: &Mesh, edge: &Edge, at_vertex: bool, random: &mut Pcg32) -> Ray {
         (true, false) => b,
         (false, _) => a + (b - a) * s,
     };
-    let target = target.as_vec3().as_dvec3();
     let bounds = mesh.bounds();
     let away = match unit_normal(&mesh.corners(edge.prim)) {
         Some(normal) => {
@@ -97,7 +100,10 @@ fn aimed(mesh: &Mesh, edge: &Edge, at_vertex: bool, random: &mut Pcg32) -> Ray {
         None => direction(random),
     };
     let origin = (target + away * (2.0 * diagonal(mesh))).as_vec3();
-    Ray::new(origin, (target - origin.as_dvec3()).as_vec3())
+    Ray {
+        t_max: BEHIND,
+        ..Ray::new(origin, (target - origin.as_dvec3()).as_vec3())
+    }
 }
 
 /// Length of the diagonal of the scene's box; of one that survives rounding where it is a point.

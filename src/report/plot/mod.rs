@@ -10,6 +10,8 @@
 //! | `work` | steps and tests of a ray, measured and predicted |
 //! | `cost` | build time and memory |
 //! | `overview` | the speeds of all combinations as small multiples, where there is more than one |
+//! | `pareto` | speed against wrong decisions, where the oracle judged |
+//! | `drift` | wrong decisions and error of t against the offset, where it judged at more than one |
 //!
 //! Equal reports give equal bytes: nothing here knows the time, the machine or its fonts.
 
@@ -18,18 +20,21 @@ use std::path::{Path, PathBuf};
 
 use super::Report;
 use super::export::{ExportError, make, put};
+use super::judged::{Course, courses, offsets};
 use super::series::{PanelKey, panels};
 
 mod axis;
 mod canvas;
 mod curves;
 mod dots;
+mod drift;
 mod figure;
 mod font;
 mod labels;
 mod lines;
 mod note;
 mod overview;
+mod pareto;
 mod plane;
 mod raster;
 mod theme;
@@ -108,12 +113,16 @@ pub fn write_all(
 }
 
 /// What a figure shows.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Subject {
     /// The speeds of all combinations as small multiples.
     Overview,
     /// One combination.
     One(PanelKey, Kind),
+    /// Speed against wrong decisions on one course, at an offset.
+    Pareto(Course, f64),
+    /// Error on one course against the offset.
+    Drift(Course),
 }
 
 /// One figure of `report` as SVG that follows the reader's preference for light or dark; `None` where the report has no
@@ -132,6 +141,8 @@ fn drawn(report: &Report, subject: &Subject, style: Style) -> Result<Option<Stri
     match subject {
         Subject::Overview => overview::svg(report, style),
         Subject::One(key, kind) => figure::svg(report, key, *kind, style),
+        Subject::Pareto(course, offset) => pareto::svg(report, course, *offset, style),
+        Subject::Drift(course) => drift::svg(report, course, style),
     }
 }
 
@@ -140,27 +151,45 @@ fn figures(report: &Report) -> Vec<(String, Subject)> {
     let mut used: BTreeMap<String, usize> = BTreeMap::new();
     let mut figures = vec![("overview".to_owned(), Subject::Overview)];
     for key in panels(&report.runs) {
-        let mut stem = file_stem(&key);
-        // Scenes that differ only in characters a file name cannot have are numbered in the order of the report.
-        let count = used.entry(stem.clone()).or_default();
-        *count += 1;
-        if *count > 1 {
-            stem = format!("{stem}-{count}");
-        }
+        let stem = distinct(file_stem(&key), &mut used);
         for kind in Kind::ALL {
             let subject = Subject::One(key.clone(), kind);
             figures.push((format!("{}-{stem}", kind.name()), subject));
         }
     }
+    for course in courses(&report.runs) {
+        let parts = [last(&course.scene), last(&course.rays)];
+        let stem = [sanitised(&parts[0]), sanitised(&parts[1])].join("-");
+        let stem = distinct(format!("{stem}-{}t", course.threads), &mut used);
+        for offset in offsets(&report.runs, &course) {
+            let name = format!("pareto-{stem}-{}", sanitised(&offset.to_string()));
+            figures.push((name, Subject::Pareto(course.clone(), offset)));
+        }
+        figures.push((format!("drift-{stem}"), Subject::Drift(course)));
+    }
     figures
+}
+
+/// `stem`, numbered where it was used before: scenes that differ only in characters a file name cannot have are
+/// numbered in the order of the report.
+fn distinct(stem: String, used: &mut BTreeMap<String, usize>) -> String {
+    let count = used.entry(stem.clone()).or_default();
+    *count += 1;
+    if *count > 1 {
+        format!("{stem}-{count}")
+    } else {
+        stem
+    }
+}
+
+/// Of a path, the file's name.
+fn last(spec: &str) -> String {
+    let name = spec.rsplit(['/', '\\']).find(|part| !part.is_empty());
+    name.unwrap_or(spec).to_owned()
 }
 
 /// A name that every file system takes: lower-case letters, digits, `.` and single hyphens. Of a path, the file's name.
 fn file_stem(key: &PanelKey) -> String {
-    let last = |spec: &str| {
-        let name = spec.rsplit(['/', '\\']).find(|part| !part.is_empty());
-        name.unwrap_or(spec).to_owned()
-    };
     let parts = [
         last(&key.scene),
         key.kernel.clone(),

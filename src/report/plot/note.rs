@@ -72,7 +72,7 @@ fn samples(counts: impl Iterator<Item = usize>) -> String {
 }
 
 /// Machine, program and day, as far as they are known.
-fn machine(p: &Provenance) -> String {
+pub(super) fn machine(p: &Provenance) -> String {
     let commit: String = p.commit.chars().take(7).collect();
     let program = match (commit.as_str(), p.dirty) {
         _ if p.version.is_empty() => "raylab".to_owned(),

@@ -302,3 +302,35 @@ fn several_combinations_get_an_overview_that_names_each() {
         assert!(texts.iter().any(|t| named(&t)), "{key}");
     }
 }
+
+#[test]
+fn judged_runs_get_a_pareto_chart_an_offset_and_one_of_error_with_every_method_named() {
+    let report = cases::all()
+        .into_iter()
+        .find(|(name, _)| *name == "judged")
+        .unwrap()
+        .1;
+    let figures = figures(&report);
+    let names: Vec<&str> = figures.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(
+        names,
+        [
+            "overview",
+            "pareto-teapot-edge-1t-0",
+            "pareto-teapot-edge-1t-10000",
+            "pareto-teapot-edge-1t-1000000",
+            "drift-teapot-edge-1t"
+        ]
+    );
+    for (name, subject) in &figures[1..] {
+        let svg = svg(&report, subject).unwrap().unwrap();
+        let texts = texts(&parsed(&svg));
+        for run in &report.runs {
+            assert!(
+                texts.iter().any(|(t, _)| *t == run.kernel),
+                "{name}: {}",
+                run.kernel
+            );
+        }
+    }
+}

@@ -2,7 +2,7 @@
 
 use crate::report::Report;
 use crate::report::Run;
-use crate::report::fixture::{N, params, report, run, run_of, summary, teapot};
+use crate::report::fixture::{N, judged, params, report, run, run_of, summary, teapot};
 use crate::stats::Summary;
 
 /// Named reports, from the everyday to the nasty.
@@ -31,7 +31,45 @@ pub(super) fn all() -> Vec<(&'static str, Report)> {
         ("long-names", long_names()),
         ("short-lines", short_lines()),
         ("combinations", combinations()),
+        ("judged", judged_methods()),
+        ("judged-alone", report(vec![judged("woop", 1e4, 3.0, 0)])),
     ]
+}
+
+/// Methods of two offsets, many with the same rate and nearly the same speed.
+fn judged_methods() -> Report {
+    let names = [
+        "woop",
+        "exact",
+        "moller-trumbore",
+        "plucker",
+        "badouel",
+        "baldwin-weber",
+        "havel-herout",
+        "kensler-shirley",
+        "pbrt",
+        "sheet-signed",
+        "sheet-signed-local",
+        "sheet-unsigned",
+        "sheet-unsigned-local",
+        "moller-trumbore-f64",
+    ];
+    let wrong = [
+        0, 0, 1147, 0, 3473, 2686, 2883, 196, 0, 1507, 1441, 28_835, 0, 1,
+    ];
+    let mut runs = Vec::new();
+    for (i, (name, wrong)) in names.iter().zip(wrong).enumerate() {
+        let speed = 10.0 + (i * 5 % 7) as f64 * 0.4;
+        runs.push(judged(name, 0.0, speed, wrong));
+        let far = if wrong > 1000 {
+            (wrong * 8).min(61_000)
+        } else {
+            wrong
+        };
+        runs.push(judged(name, 1e4, speed * 0.98, far));
+        runs.push(judged(name, 1e6, speed * 0.98, far));
+    }
+    report(runs)
 }
 
 fn over_n(accel: &str, n: &[u32]) -> Vec<Run> {

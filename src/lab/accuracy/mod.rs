@@ -381,22 +381,16 @@ mod tests {
     }
 
     #[test]
-    fn woop_never_leaks_and_the_sheet_in_world_space_leaks_more_far_away() {
-        let records = found(&plan(&["woop", "sheet-signed"], &[0.0, 1e4]));
-        let of = |kernel: &str, offset: f64| {
-            let is = |r: &&AccuracyRecord| {
-                r.run.config.kernel.name == kernel && r.accuracy.offset == offset
-            };
+    fn far_from_the_origin_the_sheet_decides_more_edges_wrongly_than_woop() {
+        let records = found(&plan(&["woop", "sheet-signed"], &[1e4]));
+        let [woop, sheet] = ["woop", "sheet-signed"].map(|kernel| {
+            let is = |r: &&AccuracyRecord| r.run.config.kernel.name == kernel;
             records.iter().find(is).unwrap().accuracy
-        };
-        for offset in [0.0, 1e4] {
-            let woop = of("woop", offset);
-            assert_eq!((woop.leaks, woop.rays), (0, 2000));
-            assert!(woop.upper95.leaks < 3.0 / 2000.0);
-        }
-        let [near, far] = [0.0, 1e4].map(|offset| of("sheet-signed", offset));
-        assert!(far.leaks > 2 * near.leaks.max(1), "{near:?} {far:?}");
-        assert!(far.t_ulp.max > 10.0 * near.t_ulp.max);
+        });
+        assert_eq!((woop.rays, woop.offset), (2000, 1e4));
+        // Only rims, where a ray touches the mesh from beside, are left to a watertight method.
+        assert!(woop.wrong() < 40, "{woop:?}");
+        assert!(sheet.wrong() > woop.wrong(), "{sheet:?} {woop:?}");
     }
 
     #[test]

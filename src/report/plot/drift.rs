@@ -172,7 +172,8 @@ fn panel(
             (right + 22.0, y),
         ];
         canvas.line(&leader, colour, 0.7, &[]);
-        let room = WIDTH - MARGIN - (right + GUTTER);
+        // Half a pixel, so that the widest name is not cut for a rounding error.
+        let room = WIDTH - MARGIN - (right + GUTTER) + 0.5;
         let text = font::fit(&line.label, face.size, face.weight, room);
         canvas.marker((right + 26.0, y), line.look.marker, colour, theme.ground);
         let base = (right + GUTTER, y + 0.36 * face.size);

@@ -466,9 +466,7 @@ fn every_accelerator_is_inspected_to_the_answer_that_trace_gives() {
             let tests = steps
                 .iter()
                 .flat_map(|s| s["tests"].as_array().expect("tests"));
-            let nearest = tests
-                .filter(|test| test["outcome"] == "nearest")
-                .next_back();
+            let nearest = tests.rfind(|test| test["outcome"] == "nearest");
             assert_eq!(nearest.expect("a hit")["prim"], prim);
         }
     }

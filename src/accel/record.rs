@@ -204,7 +204,7 @@ mod tests {
                     );
                     assert_eq!(tested as u64, counts[0].tests);
                     // The last test that became the nearest is the answer.
-                    let last = all().filter(|t| t.outcome == Outcome::Nearest).next_back();
+                    let last = all().rfind(|t| t.outcome == Outcome::Nearest);
                     assert_eq!(
                         last.map(|t| (t.prim, t.t)),
                         record

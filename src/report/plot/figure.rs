@@ -284,7 +284,7 @@ fn title(canvas: &mut Canvas, theme: &Theme, key: &PanelKey, runs: &[&Run], widt
         let facts = format!(
             "{} triangles, {} rays a sample",
             number(run.triangles as f64),
-            number(run.ray_count as f64)
+            ray_counts(runs)
         );
         canvas.text(
             &facts,
@@ -292,6 +292,17 @@ fn title(canvas: &mut Canvas, theme: &Theme, key: &PanelKey, runs: &[&Run], widt
             Anchor::Start,
             label_face_quiet(theme),
         );
+    }
+}
+
+/// The rays of a sample, with the fewest where some runs trace a part of the set: `157 to 16,428`.
+fn ray_counts(runs: &[&Run]) -> String {
+    let counts = || runs.iter().map(|run| run.ray_count);
+    match (counts().min(), counts().max()) {
+        (Some(fewest), Some(most)) if fewest < most => {
+            format!("{} to {}", number(fewest as f64), number(most as f64))
+        }
+        (_, most) => number(most.unwrap_or(0) as f64),
     }
 }
 

@@ -463,7 +463,7 @@ fn every_accelerator_is_inspected_to_the_answer_that_trace_gives() {
             let steps = seen["steps"].as_array().expect("steps");
             assert_eq!(steps[0]["kind"], kind, "{accel}");
             assert_eq!(steps[0]["bounds"].is_null(), accel == "brute");
-            let tests = steps
+            let mut tests = steps
                 .iter()
                 .flat_map(|s| s["tests"].as_array().expect("tests"));
             let nearest = tests.rfind(|test| test["outcome"] == "nearest");

@@ -20,7 +20,7 @@ pub fn run(args: &AccuracyArgs) -> Result<(), Failure> {
     plan.check()?;
     let mut report = Report {
         schema: Report::SCHEMA.to_owned(),
-        provenance: Provenance::gather(&plan.plan, std::env::args().collect())?,
+        provenance: Provenance::gather(&plan.plan, super::command_line())?,
         config: plan.plan.clone(),
         runs: Vec::new(),
     };

@@ -90,6 +90,12 @@ fn print(text: &str) -> Result<(), Failure> {
     Ok(out.flush()?)
 }
 
+/// The command line as a reader of a report would type it: without the folder that the program lies in.
+fn command_line() -> Vec<String> {
+    let program = std::iter::once("raylab".to_owned());
+    program.chain(std::env::args().skip(1)).collect()
+}
+
 fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Cli::command(), "raylab", &mut script);

@@ -183,7 +183,7 @@ fn judge(report: &Report, outcome: &Outcome) -> Result<(), Failure> {
 
 fn provenance(plan: &Plan) -> Result<Provenance, Failure> {
     plan.check()?;
-    Ok(Provenance::gather(plan, std::env::args().collect())?)
+    Ok(Provenance::gather(plan, super::command_line())?)
 }
 
 /// The plan that the command line asks for.

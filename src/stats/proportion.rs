@@ -34,7 +34,7 @@ pub fn upper95(seen: u64, rays: u64) -> f64 {
     hi
 }
 
-/// The regularised incomplete beta function I_x(a, b) for 0 < x < 1 and positive a, b.
+/// The regularised incomplete beta function `I_x(a, b)` for 0 < x < 1 and positive a, b.
 fn incomplete_beta(a: f64, b: f64, x: f64) -> f64 {
     let front = ln_gamma(a + b) - ln_gamma(a) - ln_gamma(b) + a * x.ln() + b * (-x).ln_1p();
     // The fraction converges fast on this side of the mean; the other side is its mirror image.

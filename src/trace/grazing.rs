@@ -11,7 +11,7 @@
 use rand_core::Rng;
 use rand_pcg::Pcg32;
 
-use crate::geometry::{DVec3, Ray, unit_normal};
+use crate::geometry::{DVec3, Ray, Vec3, unit_normal};
 use crate::scene::Mesh;
 
 use super::edge::diagonal;
@@ -56,7 +56,7 @@ const SLOPES: usize = 20;
 
 /// A ray at a uniform point of a triangle with this unit normal, from either side.
 fn grazing(mesh: &Mesh, prim: u32, normal: DVec3, slope: f64, random: &mut Pcg32) -> Ray {
-    let [a, b, c] = mesh.corners(prim).map(|v| v.as_dvec3());
+    let [a, b, c] = mesh.corners(prim).map(Vec3::as_dvec3);
     let [u, v] = [(); 2].map(|()| unit(random));
     // Points beyond the diagonal of the parallelogram are turned back into the triangle.
     let (u, v) = if u + v > 1.0 {

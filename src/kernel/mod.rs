@@ -4,7 +4,7 @@
 //! once, and answers for `W` triangles at a time. Kernels know nothing of structures, of other triangles, or of which
 //! hit is the nearest.
 //!
-//! To add one: a file here, and a row in [`kernels!`] below.
+//! To add one: a file here, and a row in `kernels!` below.
 
 use std::fmt::Debug;
 

@@ -33,7 +33,7 @@ impl Woop {
         watertight: true,
         bytes_per_triangle: 36,
         operations: "21 multiplications, 24 additions, 1 division (hit only)",
-        known_failures: "watertight, not exact: about 2 % of rays aimed at an edge report a triangle beside the true one; triangles below about 1e-19 in size vanish",
+        known_failures: "watertight, not exact: a ray aimed at an edge may report the triangle beside the true one; triangles below about 1e-19 in size vanish",
         params: &[],
     };
 

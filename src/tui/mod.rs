@@ -8,7 +8,7 @@
 //!        '----- app: performs them --'
 //! ```
 //!
-//! [`update`](update::update) and [`view`](view::view) are pure; [`app`] owns the terminal, the threads and the channel
+//! [`update`](update::update) and [`view`](view::view) are pure; `app` owns the terminal, the threads and the channel
 //! between them. The UI thread does no heavy work: a key is answered at once, also while every core is busy measuring.
 //! While a sample is being timed the screen redraws on its own at most four times a second and no picture is rendered;
 //! what a key costs is told to the sweep, which takes the sample again.

@@ -1,6 +1,6 @@
 //! Procedural scenes: one file a family, each with its row of the registry.
 //!
-//! Built from [`Draft`], seeded with PCG32, and the same on every machine: only `+ − × ÷ √` decide coordinates, which
+//! Built from `Draft`, seeded with PCG32, and the same on every machine: only `+ − × ÷ √` decide coordinates, which
 //! IEEE 754 rounds alike everywhere.
 
 pub mod city;

@@ -69,7 +69,7 @@ pub(super) fn svg(
     front(&mut canvas, theme, &plane, &points);
     let known = labels(&report.runs);
     draw_points(&mut canvas, theme, &plane, &points, &known);
-    taken.extend(points.iter().map(|p| Box2::around(place(&plane, p), 6.0)));
+    taken.extend(points.iter().flat_map(|p| signs(&plane, p)));
     draw_labels(&mut canvas, theme, &plane, &points, taken);
     note::draw(&mut canvas, theme, &note, foot);
     let widths = canvas.end()?;
@@ -242,6 +242,22 @@ fn draw_points(
             canvas.marker(at, look.marker, colour, theme.ground);
         }
     }
+}
+
+/// What the sign of a point and its whiskers take.
+fn signs(plane: &Plane, point: &Judged) -> [Box2; 3] {
+    let at = place(plane, point);
+    let [_, lo, hi] = point.speed.map(|speed| plane.at(speed, plane.y.hi).0);
+    let across = Box2 {
+        left: lo,
+        right: hi,
+        ..Box2::around(at, 1.5)
+    };
+    let up = Box2 {
+        top: plane.at(plane.x.lo, point.bound).1,
+        ..Box2::around(at, 3.0)
+    };
+    [Box2::around(at, 6.0), across, up]
 }
 
 /// A rectangle of the sheet.

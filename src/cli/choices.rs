@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::accel;
 use crate::kernel;
+use crate::lab;
 use crate::registry::{Choice, ChoiceError, ParamSpec};
 
 use super::Failure;
@@ -47,7 +48,7 @@ pub fn thread_counts(text: &str) -> Result<Vec<usize>, Failure> {
 /// Reads a number from 1 to 1024, or `max` for the number of cores.
 pub fn thread_count(text: &str) -> Result<usize, Failure> {
     if text == "max" {
-        return Ok(cores());
+        return Ok(lab::cores());
     }
     text.parse()
         .ok()
@@ -57,11 +58,6 @@ pub fn thread_count(text: &str) -> Result<usize, Failure> {
                 "'{text}' is not a thread count; write 1 to 1024, or max"
             ))
         })
-}
-
-/// Cores that the program may use.
-pub fn cores() -> usize {
-    std::thread::available_parallelism().map_or(1, usize::from)
 }
 
 /// Reads accelerators and kernels, then multiplies them by the axes of `--set`.

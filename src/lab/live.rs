@@ -134,25 +134,9 @@ impl Live {
     pub fn time(&mut self, pool: &ThreadPool, seconds: f64) -> (f64, f64) {
         let mut room = std::mem::replace(&mut self.room, Answers::Blocked(Vec::new()));
         let (accel, rays) = (&*self.accel, self.rays());
-        let (passes, took) = pool.install(|| {
-            let start = Instant::now();
-            let mut passes = 0_u64;
-            loop {
-                room.trace(accel, rays);
-                passes += 1;
-                let took = start.elapsed().as_secs_f64();
-                if took >= seconds {
-                    return (passes, took);
-                }
-            }
-        });
+        let timed = pool.install(|| room.time(accel, rays, seconds));
         self.room = room;
-        // A clock that did not move: the finest step that it could have made.
-        let took = took.max(1e-9);
-        (
-            passes as f64 * self.record.ray_count as f64 / took * 1e-6,
-            took,
-        )
+        timed
     }
 
     /// Checks the answers of the last timed pass against the counted ones.

@@ -48,7 +48,7 @@ impl Pools {
 }
 
 /// Cores that the program may use; 1 where the system does not say.
-pub(super) fn cores() -> usize {
+pub fn cores() -> usize {
     available_parallelism().map_or(1, usize::from)
 }
 

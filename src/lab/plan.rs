@@ -151,7 +151,7 @@ impl Default for Plan {
             n: (0..8).map(|k| NRule::Fixed(1 << k)).collect(),
             kernels: kernel::parse("woop").into_iter().collect(),
             rays: vec!["primary".to_owned()],
-            threads: vec![std::thread::available_parallelism().map_or(1, usize::from)],
+            threads: vec![super::cores()],
             ray_count: RAYS,
             seed: 1,
             budget: Budget::default(),

@@ -1,7 +1,5 @@
 //! The speed of one structure on one list of rays, measured on its own.
 
-use std::time::Instant;
-
 use crate::accel::Accelerator;
 use crate::geometry::Ray;
 use crate::stats::Summary;
@@ -27,21 +25,13 @@ pub fn speed(
         return Summary::default();
     }
     let mut answers = Answers::room(query, rays.len());
-    let mut pass = || {
-        let start = Instant::now();
-        answers.trace(accel, rays);
-        start.elapsed().as_secs_f64()
-    };
-    let warm_up = pass();
-    let passes = (budget.sample_seconds / warm_up.max(1e-9))
-        .ceil()
-        .clamp(1.0, 1e6) as usize;
+    let _warm_up = answers.time(accel, rays, 0.0);
     let mut speeds = Vec::new();
     let mut spent = 0.0;
     while stop_reason(&speeds, spent, budget, seed).is_none() {
-        let seconds: f64 = (0..passes).map(|_| pass()).sum();
-        speeds.push((passes * rays.len()) as f64 / seconds.max(1e-9) * 1e-6);
-        spent += seconds;
+        let (speed, took) = answers.time(accel, rays, budget.sample_seconds);
+        speeds.push(speed);
+        spent += took;
     }
     Summary::of(&speeds, seed)
 }

@@ -30,7 +30,7 @@ impl Provenance {
             target: env!("RAYLAB_TARGET").to_owned(),
             profile: env!("RAYLAB_PROFILE").to_owned(),
             cpu: cpu_model(),
-            cores: std::thread::available_parallelism().map_or(1, usize::from),
+            cores: crate::lab::cores(),
             caches: caches(Path::new("/sys/devices/system/cpu/cpu0/cache")),
             // Every traversal is scalar so far; the compiler takes the target's baseline.
             instruction_set: format!("scalar, {} baseline", std::env::consts::ARCH),

@@ -91,7 +91,7 @@ pub fn count(text: &str) -> Result<usize, String> {
 /// # Errors
 /// A word that is no number of threads; a sentence.
 pub fn threads(text: &str) -> Result<Vec<usize>, String> {
-    let max = std::thread::available_parallelism().map_or(1, usize::from);
+    let max = lab::cores();
     let mut list = Vec::new();
     for word in text.split(',').map(str::trim) {
         let threads = match word {

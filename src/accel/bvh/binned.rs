@@ -9,7 +9,8 @@ use crate::geometry::{Aabb, Vec3, axis};
 use crate::scene::Mesh;
 
 use super::super::sah::{Costs, half_area};
-use super::{MAX_DEPTH, Node};
+use super::super::stack::MAX_DEPTH;
+use super::Node;
 
 /// Bins an axis. More than 16 gains less than 1 % of SAH cost (Wald 2007, figure 5).
 const BINS: usize = 16;

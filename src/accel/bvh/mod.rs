@@ -18,24 +18,22 @@ use crate::geometry::{Aabb, Ray};
 use crate::registry::{ParamKind, ParamSpec, Params};
 use crate::scene::Mesh;
 
-use super::slab::{Corners, SlabRay, corners};
-use super::stack::{MAX_DEPTH, Room, Stack, room};
+use super::slab::SlabRay;
+use super::stack::{Room, Stack, room};
 use super::{AcceleratorEntry, Structure, StructureStats, Visitor, finish};
 
 mod binned;
+mod tree;
 mod validate;
+
+pub(super) use tree::{BinaryTree, Build, Node, binary};
 
 pub(super) const ENTRY: AcceleratorEntry = AcceleratorEntry {
     name: "bvh",
     about: "A binary tree of boxes, split by the surface area heuristic.",
     paper: "Wald 2007, On fast Construction of SAH-based Bounding Volume Hierarchies",
     params: &[
-        ParamSpec {
-            name: "build",
-            about: "How the tree is built.",
-            kind: ParamKind::Choice(&["binned"]),
-            default: "binned",
-        },
+        Build::PARAM,
         ParamSpec {
             name: "leaf",
             about: "Most triangles in a leaf.",
@@ -47,47 +45,10 @@ pub(super) const ENTRY: AcceleratorEntry = AcceleratorEntry {
     build: |request| finish(Bvh::build(request.mesh, request.params), request),
 };
 
-/// A box and what is in it: two children at `first` and `first + 1`, or `count` references from `first` on.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[repr(C)]
-struct Node {
-    corners: Corners,
-    first: u32,
-    /// Zero for an interior node.
-    count: u32,
-}
-
-impl Node {
-    fn leaf(bounds: Aabb, first: u32, count: u32) -> Self {
-        Self {
-            corners: corners(bounds),
-            first,
-            count,
-        }
-    }
-
-    fn interior(bounds: Aabb, first: u32) -> Self {
-        Self::leaf(bounds, first, 0)
-    }
-
-    fn is_leaf(&self) -> bool {
-        self.count != 0
-    }
-
-    fn bounds(&self) -> Aabb {
-        Aabb {
-            min: self.corners[0].into(),
-            max: self.corners[1].into(),
-        }
-    }
-}
-
 /// The structure `bvh`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bvh {
-    /// The root is first; empty for an empty mesh.
-    nodes: Vec<Node>,
-    references: Vec<u32>,
+    tree: BinaryTree,
     bounds: Aabb,
 }
 
@@ -96,16 +57,14 @@ impl Bvh {
     #[must_use]
     pub fn build(mesh: &Mesh, params: &Params) -> Self {
         let most = params.number("leaf").unwrap_or(4.0) as usize;
-        let (nodes, references) = binned::build(mesh, most.max(1));
         Self {
-            nodes,
-            references,
+            tree: binary(mesh, Build::of(params), most),
             bounds: mesh.bounds(),
         }
     }
 
     fn references_of(&self, leaf: &Node) -> &[u32] {
-        &self.references[leaf.first as usize..][..leaf.count as usize]
+        &self.tree.references[leaf.first as usize..][..leaf.count as usize]
     }
 }
 
@@ -118,7 +77,7 @@ impl Structure for Bvh {
 
     #[inline(always)]
     fn traverse<V: Visitor>(&self, ray: &Ray, room: &mut Room, visitor: &mut V) {
-        let Some(root) = self.nodes.first() else {
+        let Some(root) = self.tree.nodes.first() else {
             return;
         };
         let slabs = SlabRay::new(ray, &self.bounds);
@@ -144,7 +103,7 @@ impl Structure for Bvh {
             } else {
                 let limit = visitor.t_limit();
                 let first = node.first;
-                let [a, b] = &self.nodes[first as usize..][..2] else {
+                let [a, b] = &self.tree.nodes[first as usize..][..2] else {
                     return;
                 };
                 let (a_entry, a_exit) = slabs.clip(&a.corners, limit);
@@ -170,29 +129,30 @@ impl Structure for Bvh {
             let Some(next) = stack.pop(visitor.t_limit()) else {
                 return;
             };
-            node = &self.nodes[next.node as usize];
+            node = &self.tree.nodes[next.node as usize];
             (place, entry, exit) = (next.node, next.entry, next.exit);
         }
     }
 
     fn place_bounds(&self, place: u64) -> Option<Aabb> {
         let place = usize::try_from(place).ok()?;
-        self.nodes.get(place).map(Node::bounds)
+        self.tree.nodes.get(place).map(Node::bounds)
     }
 
     fn stats(&self) -> StructureStats {
         StructureStats {
-            cells: self.nodes.len() as u64,
+            cells: self.tree.nodes.len() as u64,
             empty_cells: 0,
-            references: self.references.len() as u64,
-            depth: validate::depth(&self.nodes),
-            longest_list: self.nodes.iter().map(|n| n.count).max().unwrap_or(0),
+            references: self.tree.references.len() as u64,
+            depth: validate::depth(&self.tree.nodes),
+            longest_list: self.tree.nodes.iter().map(|n| n.count).max().unwrap_or(0),
             dims: None,
         }
     }
 
     fn memory_bytes(&self) -> u64 {
-        (size_of_val(self.nodes.as_slice()) + size_of_val(self.references.as_slice())) as u64
+        (size_of_val(self.tree.nodes.as_slice()) + size_of_val(self.tree.references.as_slice()))
+            as u64
     }
 
     fn validate(&self, mesh: &Mesh) -> Result<(), String> {

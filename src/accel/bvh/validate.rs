@@ -2,7 +2,8 @@
 
 use crate::scene::Mesh;
 
-use super::{Bvh, MAX_DEPTH, Node};
+use super::super::stack::MAX_DEPTH;
+use super::{Bvh, Node};
 
 /// Longest way from the root to a leaf; 0 for an empty tree.
 pub(super) fn depth(nodes: &[Node]) -> u32 {
@@ -24,17 +25,17 @@ pub(super) fn depth(nodes: &[Node]) -> u32 {
 /// Checks that every node is reached once, within the stack's depth, that boxes contain their parts, and that every
 /// triangle is referenced once.
 pub(super) fn validate(bvh: &Bvh, mesh: &Mesh) -> Result<(), String> {
-    if mesh.is_empty() != bvh.nodes.is_empty() {
+    if mesh.is_empty() != bvh.tree.nodes.is_empty() {
         return Err("only an empty mesh has an empty tree".to_owned());
     }
     let mut referenced = vec![false; mesh.len()];
-    let mut reached = vec![false; bvh.nodes.len()];
+    let mut reached = vec![false; bvh.tree.nodes.len()];
     let mut open = vec![(0, 0, mesh.bounds())];
-    if bvh.nodes.is_empty() {
+    if bvh.tree.nodes.is_empty() {
         open.clear();
     }
     while let Some((index, depth, outer)) = open.pop() {
-        let Some(node) = bvh.nodes.get(index) else {
+        let Some(node) = bvh.tree.nodes.get(index) else {
             return Err(format!("node {index} does not exist"));
         };
         if std::mem::replace(&mut reached[index], true) {
@@ -52,7 +53,7 @@ pub(super) fn validate(bvh: &Bvh, mesh: &Mesh) -> Result<(), String> {
             open.push((node.first as usize + 1, depth + 1, bounds));
             continue;
         }
-        if (node.first as usize + node.count as usize) > bvh.references.len() {
+        if (node.first as usize + node.count as usize) > bvh.tree.references.len() {
             return Err(format!("leaf {index} has more references than there are"));
         }
         for &prim in bvh.references_of(node) {

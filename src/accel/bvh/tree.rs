@@ -1,0 +1,91 @@
+//! Binary trees of boxes: what every build of this room gives, and the choice among the builds.
+
+use crate::geometry::Aabb;
+use crate::registry::{ParamKind, ParamSpec, Params};
+use crate::scene::Mesh;
+
+use super::super::slab::{Corners, corners};
+use super::binned;
+
+/// A box and what is in it: two children at `first` and `first + 1`, or `count` references from `first` on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(C)]
+pub(in crate::accel) struct Node {
+    /// The least and the greatest corner.
+    pub corners: Corners,
+    /// The first child, or the first reference of a leaf.
+    pub first: u32,
+    /// References of a leaf; zero for an interior node.
+    pub count: u32,
+}
+
+impl Node {
+    pub fn leaf(bounds: Aabb, first: u32, count: u32) -> Self {
+        Self {
+            corners: corners(bounds),
+            first,
+            count,
+        }
+    }
+
+    pub fn interior(bounds: Aabb, first: u32) -> Self {
+        Self::leaf(bounds, first, 0)
+    }
+
+    pub fn is_leaf(&self) -> bool {
+        self.count != 0
+    }
+
+    pub fn bounds(&self) -> Aabb {
+        Aabb {
+            min: self.corners[0].into(),
+            max: self.corners[1].into(),
+        }
+    }
+}
+
+/// A binary tree over the triangles of a mesh.
+///
+/// No leaf is empty or lies deeper than [`MAX_DEPTH`](super::super::stack::MAX_DEPTH), the box of a node contains those
+/// of its children, and the boxes of the leaves that list a triangle together contain all of it. A leaf lists a triangle
+/// once; with [`Build::Binned`] only one leaf does, and its box contains the triangle's.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::accel) struct BinaryTree {
+    /// The root is first; children lie side by side, behind their parent. Empty for an empty mesh.
+    pub nodes: Vec<Node>,
+    /// Triangle indices in the order of the leaves.
+    pub references: Vec<u32>,
+}
+
+/// How a binary tree is built.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::accel) enum Build {
+    /// Top down, split by histograms of centroids.
+    Binned,
+}
+
+impl Build {
+    /// The parameter that names the build, for structures that stand on a binary tree.
+    pub const PARAM: ParamSpec = ParamSpec {
+        name: "build",
+        about: "How the tree is built.",
+        kind: ParamKind::Choice(&["binned"]),
+        default: "binned",
+    };
+
+    /// The build that `params` names.
+    pub fn of(_params: &Params) -> Self {
+        Self::Binned
+    }
+}
+
+/// Builds a tree over `mesh` whose leaves hold at most `most` references (at least 1); with `most` = 1 each holds one.
+///
+/// Runs in parallel in the rayon pool it is called in and gives the same tree whatever its threads. In time
+/// O(N log N).
+pub(in crate::accel) fn binary(mesh: &Mesh, build: Build, most: usize) -> BinaryTree {
+    let (nodes, references) = match build {
+        Build::Binned => binned::build(mesh, most.max(1)),
+    };
+    BinaryTree { nodes, references }
+}

@@ -10,6 +10,7 @@ pub(super) const ENTRY: AcceleratorEntry = AcceleratorEntry {
     about: "Tests every triangle: no structure, and the judge of all others.",
     paper: "",
     params: &[],
+    control: false,
     resolution: None,
     build: |request| {
         let triangles = request.mesh.len() as u32;

@@ -200,6 +200,8 @@ pub struct AcceleratorEntry {
     pub paper: &'static str,
     /// Parameters beside n.
     pub params: &'static [ParamSpec],
+    /// Whether it makes a known mistake on purpose: an exhibit of the stability suite, chosen only by name.
+    pub control: bool,
     /// Present where the structure has a resolution n.
     #[serde(skip)]
     pub resolution: Option<Resolution>,

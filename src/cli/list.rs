@@ -86,7 +86,11 @@ fn describe(row: &Value) -> String {
         "" => text("name").to_owned(),
         size => format!("{}:{size}", text("name")),
     };
-    let mut lines = vec![format!("{name:<22} {}", text("about"))];
+    let mark = match row["control"].as_bool() {
+        Some(true) => "(control) ",
+        _ => "",
+    };
+    let mut lines = vec![format!("{name:<22} {mark}{}", text("about"))];
     if !text("paper").is_empty() {
         lines.push(format!("{:<22}   {}", "", text("paper")));
     }

@@ -192,7 +192,8 @@ fn plan(args: &SweepArgs) -> Result<Plan, Failure> {
         list if list.is_empty() => default.iter().map(|&d| d.to_owned()).collect(),
         list => list,
     };
-    let accels: Vec<&str> = ACCELERATORS.iter().map(|a| a.name).collect();
+    let sound = ACCELERATORS.iter().filter(|a| !a.control);
+    let accels: Vec<&str> = sound.map(|a| a.name).collect();
     let (accels, kernels) = with_axes(
         &or(&args.accel, &accels),
         &or(&args.kernel, &["woop"]),

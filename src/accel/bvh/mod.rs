@@ -41,6 +41,7 @@ pub(super) const ENTRY: AcceleratorEntry = AcceleratorEntry {
             default: "4",
         },
     ],
+    control: false,
     resolution: None,
     build: |request| finish(Bvh::build(request.mesh, request.params), request),
 };

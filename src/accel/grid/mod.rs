@@ -69,6 +69,7 @@ pub(super) const ENTRY: AcceleratorEntry = AcceleratorEntry {
             default: "n3",
         },
     ],
+    control: false,
     resolution: Some(Resolution {
         auto: |mesh, params| Model::new(mesh, Settings::read(params)).best().0,
         predict: |mesh, params, n| Model::new(mesh, Settings::read(params)).predict(n),

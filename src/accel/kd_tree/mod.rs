@@ -42,6 +42,7 @@ pub(super) const ENTRY: AcceleratorEntry = AcceleratorEntry {
         kind: ParamKind::Choice(&["on", "off"]),
         default: "on",
     }],
+    control: false,
     resolution: None,
     build: |request| finish(KdTree::build(request.mesh, request.params), request),
 };

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 
-use raylab::geometry::lanes::{F32x8, Lane, LaneMask};
+use raylab::geometry::lanes::{F32x8, Lane, LaneMask, LaneRay};
 use raylab::geometry::{Hit, Ray, Vec3};
 use raylab::kernel::{KERNELS, Kernel, KernelUser, LaneHit, dispatch, entry, parse};
 use raylab::oracle;
@@ -20,7 +20,7 @@ impl BothWidths<'_> {
         lane: usize,
     ) -> Option<[u32; 3]> {
         let hit = hit.filter(|hit| hit.mask.bits() >> lane & 1 == 1)?;
-        let of = |x: L| x.to_array()[lane];
+        let of = |x: L| x.get(lane);
         // Which NaN comes out is not specified.
         let bits = |x: f32| if x.is_nan() { u32::MAX } else { x.to_bits() };
         Some([of(hit.t), of(hit.u), of(hit.v)].map(bits))
@@ -30,10 +30,10 @@ impl BothWidths<'_> {
 impl KernelUser for BothWidths<'_> {
     type Out = [[Option<[u32; 3]>; 8]; 2];
     fn with<K: Kernel>(self, kernel: K) -> Self::Out {
-        let wide_ray = kernel.prepare::<8, F32x8>(self.ray);
+        let wide_ray = kernel.prepare::<8, F32x8>(self.ray, &LaneRay::splat(self.ray));
         let wide = kernel.pack::<8>(|lane| self.triangles[lane]);
         let wide = kernel.intersect::<8, F32x8>(&wide_ray, &wide);
-        let ray = kernel.prepare::<1, f32>(self.ray);
+        let ray = kernel.prepare::<1, f32>(self.ray, &LaneRay::splat(self.ray));
         [
             std::array::from_fn(|lane| Self::lane(wide.as_ref(), lane)),
             std::array::from_fn(|lane| {
@@ -54,7 +54,7 @@ impl KernelUser for OneHit<'_> {
     type Out = Option<(Hit, f32)>;
     fn with<K: Kernel>(self, kernel: K) -> Self::Out {
         let packed = kernel.pack::<1>(|_| *self.corners);
-        let ray = kernel.prepare::<1, f32>(self.ray);
+        let ray = kernel.prepare::<1, f32>(self.ray, &LaneRay::splat(self.ray));
         let hit = kernel.intersect::<1, f32>(&ray, &packed)?;
         let LaneHit { mask, t, u, v } = hit;
         mask.then(|| {

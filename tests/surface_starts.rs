@@ -2,6 +2,7 @@
 
 use proptest::prelude::*;
 use raylab::geometry::lanes::LaneMask;
+use raylab::geometry::lanes::LaneRay;
 use raylab::geometry::{Ray, SurfacePoint, Vec3, unit_normal};
 use raylab::kernel::{self, Kernel, KernelUser};
 
@@ -15,7 +16,7 @@ impl KernelUser for SelfHit {
     type Out = bool;
     fn with<K: Kernel>(self, kernel: K) -> bool {
         let triangle = kernel.pack::<1>(|_| self.corners);
-        let prepared = kernel.prepare::<1, f32>(&self.ray);
+        let prepared = kernel.prepare::<1, f32>(&self.ray, &LaneRay::splat(&self.ray));
         kernel
             .intersect(&prepared, &triangle)
             .is_some_and(|hit| hit.mask.any() && hit.t >= 0.0)

@@ -1,6 +1,7 @@
 //! Visitors: what a traversal reports to. One visitor bundles the query (closest hit or occlusion), the counter (real or
 //! compiled away) and the kernel, so that a traversal is written once.
 
+use crate::geometry::lanes::LaneRay;
 use crate::geometry::{Hit, Ray};
 use crate::kernel::{Kernel, LaneHit};
 use crate::scene::Mesh;
@@ -99,6 +100,7 @@ impl Counter for Counted {
 }
 
 /// The triangles of a mesh, packed for a kernel one by one.
+#[derive(Clone, Copy)]
 pub(super) struct PackedMesh<'a, K: Kernel> {
     pub kernel: &'a K,
     pub mesh: &'a Mesh,
@@ -120,7 +122,7 @@ impl<'a, K: Kernel, C: Counter, const OCCLUSION: bool> Query<'a, K, C, OCCLUSION
     pub fn new(packed: PackedMesh<'a, K>, ray: &'a Ray, counter: &'a mut C) -> Self {
         counter.begin();
         Self {
-            prepared: packed.kernel.prepare(ray),
+            prepared: packed.kernel.prepare(ray, &LaneRay::splat(ray)),
             packed,
             ray,
             best: Hit::MISS,
@@ -133,26 +135,19 @@ impl<'a, K: Kernel, C: Counter, const OCCLUSION: bool> Query<'a, K, C, OCCLUSION
     /// was taken.
     #[inline(always)]
     fn offer(&mut self, prim: u32, hit: LaneHit<1, f32>) -> bool {
-        let in_interval = hit.t >= self.ray.t_min && hit.t <= self.ray.t_max;
-        if !in_interval {
+        let PackedMesh { kernel, mesh, .. } = self.packed;
+        let LaneHit { t, u, v, .. } = hit;
+        let hit = Hit { t, u, v, prim };
+        if !kernel.within(mesh, self.ray, &hit) {
             return false;
         }
         if OCCLUSION {
             self.best.prim = prim;
             return true;
         }
-        // MISS has t = infinity and the highest index, so it loses to every hit, even one at infinity.
-        if hit.t < self.best.t || (hit.t == self.best.t && prim < self.best.prim) {
-            self.best = Hit {
-                t: hit.t,
-                u: hit.u,
-                v: hit.v,
-                prim,
-            };
-            let error =
-                self.packed
-                    .kernel
-                    .t_error(self.ray, &self.packed.mesh.corners(prim), hit.t);
+        if kernel.nearer(mesh, self.ray, &hit, &self.best) {
+            self.best = hit;
+            let error = kernel.t_error(self.ray, &mesh.corners(prim), hit.t);
             self.limit = self.limit.min(hit.t + error);
             return true;
         }

@@ -8,11 +8,21 @@
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-use super::Vec3;
+use super::{Ray, Vec3};
 
-mod x8;
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
+mod isa;
+mod pair;
+mod portable;
+#[cfg(test)]
+mod tests;
 
-pub use x8::{F32x8, Mask8};
+pub use isa::{InstructionSet, Isa, Portable, Task, prefetch};
+pub use pair::Pair;
+pub use portable::{F32x8, Mask8};
 
 /// The truth values of `W` comparisons.
 pub trait LaneMask:
@@ -28,7 +38,8 @@ pub trait LaneMask:
     }
 }
 
-/// `W` numbers that are computed with at once.
+/// Numbers that are computed with at once: one for each of `W` triangles or boxes, or, where `W` is 1, one for each ray of
+/// a packet that meets one triangle.
 pub trait Lane<const W: usize>:
     Copy
     + Add<Output = Self>
@@ -40,12 +51,23 @@ pub trait Lane<const W: usize>:
     /// The result of comparing two of these.
     type Mask: LaneMask;
 
+    /// How many numbers it holds: `W`, or the rays of a packet.
+    const N: usize;
+
     /// The same number in every lane.
     fn splat(x: f32) -> Self;
-    /// One number a lane.
+    /// One number a triangle; in a packet the same for every ray.
     fn load(xs: &[f32; W]) -> Self;
     /// One number a lane.
-    fn to_array(self) -> [f32; W];
+    fn from_fn(number: impl FnMut(usize) -> f32) -> Self;
+    /// The number in a lane below `N`.
+    fn get(self, lane: usize) -> f32;
+    /// `self` where it is greater, else `other`; so `other` where either is NaN.
+    #[must_use]
+    fn max(self, other: Self) -> Self;
+    /// `self` where it is less, else `other`; so `other` where either is NaN.
+    #[must_use]
+    fn min(self, other: Self) -> Self;
     /// Absolute value.
     #[must_use]
     fn abs(self) -> Self;
@@ -83,6 +105,8 @@ impl LaneMask for bool {
 impl Lane<1> for f32 {
     type Mask = bool;
 
+    const N: usize = 1;
+
     #[inline(always)]
     fn splat(x: f32) -> Self {
         x
@@ -92,8 +116,20 @@ impl Lane<1> for f32 {
         xs[0]
     }
     #[inline(always)]
-    fn to_array(self) -> [f32; 1] {
-        [self]
+    fn from_fn(mut number: impl FnMut(usize) -> f32) -> Self {
+        number(0)
+    }
+    #[inline(always)]
+    fn get(self, _: usize) -> f32 {
+        self
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        if self < other { self } else { other }
     }
     #[inline(always)]
     fn abs(self) -> Self {
@@ -118,6 +154,43 @@ impl Lane<1> for f32 {
     #[inline(always)]
     fn eq(self, other: Self) -> bool {
         self == other
+    }
+}
+
+/// Rays in lanes: the same ray in each, or the rays of a packet.
+#[derive(Debug, Clone, Copy)]
+pub struct LaneRay<L> {
+    /// Origins.
+    pub origin: LaneVec3<L>,
+    /// Directions.
+    pub dir: LaneVec3<L>,
+}
+
+impl<L> LaneRay<L> {
+    /// The same ray in every lane.
+    #[must_use]
+    #[inline(always)]
+    pub fn splat<const W: usize>(ray: &Ray) -> Self
+    where
+        L: Lane<W>,
+    {
+        Self {
+            origin: LaneVec3::splat(ray.origin),
+            dir: LaneVec3::splat(ray.dir),
+        }
+    }
+
+    /// One ray a lane.
+    #[must_use]
+    #[inline(always)]
+    pub fn of<'a, const W: usize>(ray: impl Fn(usize) -> &'a Ray) -> Self
+    where
+        L: Lane<W>,
+    {
+        Self {
+            origin: LaneVec3::of(|lane| ray(lane).origin),
+            dir: LaneVec3::of(|lane| ray(lane).dir),
+        }
     }
 }
 
@@ -147,6 +220,20 @@ impl<L> LaneVec3<L> {
         }
     }
 
+    /// One vector a lane.
+    #[must_use]
+    #[inline(always)]
+    pub fn of<const W: usize>(vector: impl Fn(usize) -> Vec3) -> Self
+    where
+        L: Lane<W>,
+    {
+        Self {
+            x: L::from_fn(|lane| vector(lane).x),
+            y: L::from_fn(|lane| vector(lane).y),
+            z: L::from_fn(|lane| vector(lane).z),
+        }
+    }
+
     /// One vector a lane, from three rows of `W` components.
     #[must_use]
     #[inline(always)]
@@ -159,6 +246,18 @@ impl<L> LaneVec3<L> {
             y: L::load(&rows[1]),
             z: L::load(&rows[2]),
         }
+    }
+
+    /// The components in another order.
+    #[must_use]
+    #[inline(always)]
+    pub fn permuted(self, axes: [usize; 3]) -> Self
+    where
+        L: Copy,
+    {
+        let all = [self.x, self.y, self.z];
+        let [x, y, z] = axes.map(|axis| all[axis]);
+        Self { x, y, z }
     }
 
     /// Componentwise difference.

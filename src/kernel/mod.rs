@@ -10,9 +10,10 @@ use std::fmt::Debug;
 
 use serde::Serialize;
 
-use crate::geometry::lanes::Lane;
-use crate::geometry::{DVec3, Ray, Vec3};
+use crate::geometry::lanes::{Lane, LaneRay};
+use crate::geometry::{DVec3, Hit, Ray, Vec3};
 use crate::registry::{Choice, ChoiceError, ParamSpec};
+use crate::scene::Mesh;
 
 mod error;
 mod moller_trumbore;
@@ -49,12 +50,26 @@ pub trait Kernel: Debug + Clone + Send + Sync + 'static {
     /// Packs the triangles whose corners `corners(lane)` gives.
     fn pack<const W: usize>(&self, corners: impl Fn(usize) -> [Vec3; 3]) -> Self::Packed<W>;
 
-    /// Prepares a valid ray.
-    fn prepare<const W: usize, L: Lane<W>>(&self, ray: &Ray) -> Self::Prepared<W, L>;
+    /// One triangle of a block.
+    fn lane(block: &Self::Packed<8>, lane: usize) -> Self::Packed<1>;
 
-    /// Tests the ray's whole line against `W` triangles; `None` only if no lane is hit.
+    /// Prepares valid rays, one a lane: the same in each, or those of a packet. `lead` is one of them; the others agree
+    /// with it by [`Kernel::same_frame`].
+    fn prepare<const W: usize, L: Lane<W>>(
+        &self,
+        lead: &Ray,
+        rays: &LaneRay<L>,
+    ) -> Self::Prepared<W, L>;
+
+    /// Whether two rays may be prepared together.
+    #[inline(always)]
+    fn same_frame(_: &Ray, _: &Ray) -> bool {
+        true
+    }
+
+    /// Tests the whole lines of the rays against the triangles, lane by lane; `None` only if no lane is hit.
     ///
-    /// The caller compares `t` with the ray's interval. A NaN `t` is never accepted by those comparisons.
+    /// The caller compares `t` with the rays' intervals, see [`Kernel::within`]. A NaN `t` is never accepted.
     fn intersect<const W: usize, L: Lane<W>>(
         &self,
         ray: &Self::Prepared<W, L>,
@@ -66,6 +81,19 @@ pub trait Kernel: Debug + Clone + Send + Sync + 'static {
     /// Traversals stop only beyond `t + t_error`, so an error of the kernel never makes them miss a nearer triangle.
     /// Asked once an accepted hit, not once a test. May be infinite, never NaN.
     fn t_error(&self, ray: &Ray, corners: &[Vec3; 3], t: f32) -> f32;
+
+    /// Whether `hit`, which this kernel found on the ray's line, lies within the ray's interval. Both ends belong to it.
+    #[inline(always)]
+    fn within(&self, _: &Mesh, ray: &Ray, hit: &Hit) -> bool {
+        hit.t >= ray.t_min && hit.t <= ray.t_max
+    }
+
+    /// Whether `new` is to be preferred to `best`, which may be [`Hit::MISS`]: nearer, or as near with a lower index.
+    #[inline(always)]
+    fn nearer(&self, _: &Mesh, _: &Ray, new: &Hit, best: &Hit) -> bool {
+        // A miss has t = infinity and the highest index, so it loses to every hit, even one at infinity.
+        new.t < best.t || (new.t == best.t && new.prim < best.prim)
+    }
 }
 
 /// A row of the kernel registry.
@@ -100,6 +128,11 @@ fn with_area(corners: [Vec3; 3]) -> [Vec3; 3] {
     } else {
         corners
     }
+}
+
+/// One lane of rows of eight.
+fn lane_of<const ROWS: usize>(rows: &[[f32; 8]; ROWS], lane: usize) -> [[f32; 1]; ROWS] {
+    rows.map(|row| [row[lane & 7]])
 }
 
 /// Three rows of `W` components from one vector a lane.

@@ -5,7 +5,7 @@
 //! determinant, of a ray parallel to the triangle, is a miss, nothing else is. A triangle without area is made one point
 //! when it is packed, since its determinant would be a rounding error.
 
-use crate::geometry::lanes::{Lane, LaneMask, LaneVec3};
+use crate::geometry::lanes::{Lane, LaneMask, LaneRay, LaneVec3};
 use crate::geometry::{DVec3, Ray, Vec3};
 use crate::registry::Params;
 
@@ -41,16 +41,9 @@ pub struct Packed<const W: usize> {
     e2: [[f32; W]; 3],
 }
 
-/// Origin and direction in every lane.
-#[derive(Debug, Clone, Copy)]
-pub struct Prepared<L> {
-    origin: LaneVec3<L>,
-    dir: LaneVec3<L>,
-}
-
 impl Kernel for MollerTrumbore {
     type Packed<const W: usize> = Packed<W>;
-    type Prepared<const W: usize, L: Lane<W>> = Prepared<L>;
+    type Prepared<const W: usize, L: Lane<W>> = LaneRay<L>;
 
     fn pack<const W: usize>(&self, corners: impl Fn(usize) -> [Vec3; 3]) -> Packed<W> {
         let corners = |lane| super::with_area(corners(lane));
@@ -62,17 +55,23 @@ impl Kernel for MollerTrumbore {
     }
 
     #[inline(always)]
-    fn prepare<const W: usize, L: Lane<W>>(&self, ray: &Ray) -> Prepared<L> {
-        Prepared {
-            origin: LaneVec3::splat(ray.origin),
-            dir: LaneVec3::splat(ray.dir),
+    fn lane(block: &Packed<8>, lane: usize) -> Packed<1> {
+        Packed {
+            v0: super::lane_of(&block.v0, lane),
+            e1: super::lane_of(&block.e1, lane),
+            e2: super::lane_of(&block.e2, lane),
         }
+    }
+
+    #[inline(always)]
+    fn prepare<const W: usize, L: Lane<W>>(&self, _: &Ray, rays: &LaneRay<L>) -> LaneRay<L> {
+        *rays
     }
 
     #[inline(always)]
     fn intersect<const W: usize, L: Lane<W>>(
         &self,
-        ray: &Prepared<L>,
+        ray: &LaneRay<L>,
         tri: &Packed<W>,
     ) -> Option<LaneHit<W, L>> {
         let zero = L::splat(0.0);

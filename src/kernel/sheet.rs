@@ -10,7 +10,7 @@
 //! **Source:** the exercise sheet that raylab grew from.
 //! **Differs:** the normal is computed in `f64` once and stored in `f32`, so tiny triangles keep theirs.
 
-use crate::geometry::lanes::{Lane, LaneMask, LaneVec3};
+use crate::geometry::lanes::{Lane, LaneMask, LaneRay, LaneVec3};
 use crate::geometry::{DVec3, Ray, Vec3};
 
 use super::error::{self, HUGE, Quotient, TINY, gamma};
@@ -21,13 +21,6 @@ pub struct Packed<const W: usize> {
     corners: [[[f32; W]; 3]; 3],
     normal: [[f32; W]; 3],
     area: [f32; W],
-}
-
-/// Origin and direction in every lane.
-#[derive(Debug, Clone, Copy)]
-pub struct Prepared<L> {
-    origin: LaneVec3<L>,
-    dir: LaneVec3<L>,
 }
 
 /// Where a ray crosses the planes of `W` triangles.
@@ -60,12 +53,13 @@ pub(super) fn pack<const W: usize>(corners: impl Fn(usize) -> [Vec3; 3]) -> Pack
     }
 }
 
-/// The ray as the test reads it.
+/// One triangle of a block.
 #[inline(always)]
-pub(super) fn prepare<const W: usize, L: Lane<W>>(ray: &Ray) -> Prepared<L> {
-    Prepared {
-        origin: LaneVec3::splat(ray.origin),
-        dir: LaneVec3::splat(ray.dir),
+pub(super) fn lane(block: &Packed<8>, lane: usize) -> Packed<1> {
+    Packed {
+        corners: [0, 1, 2].map(|i| super::lane_of(&block.corners[i], lane)),
+        normal: super::lane_of(&block.normal, lane),
+        area: [block.area[lane & 7]],
     }
 }
 
@@ -74,7 +68,7 @@ pub(super) fn prepare<const W: usize, L: Lane<W>>(ray: &Ray) -> Prepared<L> {
 /// The crossing is compared with the corners in world space, or with `LOCAL` relative to the ray's origin.
 #[inline(always)]
 pub(super) fn cross<const W: usize, const LOCAL: bool, L: Lane<W>>(
-    ray: &Prepared<L>,
+    ray: &LaneRay<L>,
     tri: &Packed<W>,
 ) -> Option<Crossing<L, L::Mask>> {
     let normal = LaneVec3::load(&tri.normal);

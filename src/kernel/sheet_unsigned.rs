@@ -11,11 +11,11 @@
 //! **Differs:** twice the areas are compared; the tolerance is relative to the whole area. `LOCAL` (the kernel
 //! `sheet-unsigned-local`) works relative to the ray's origin.
 
-use crate::geometry::lanes::{Lane, LaneMask};
+use crate::geometry::lanes::{Lane, LaneMask, LaneRay};
 use crate::geometry::{Ray, Vec3};
 use crate::registry::{ParamKind, ParamSpec, Params};
 
-use super::sheet::{self, Packed, Prepared};
+use super::sheet::{self, Packed};
 use super::{Kernel, KernelEntry, LaneHit};
 
 /// The kernel `sheet-unsigned`, or `sheet-unsigned-local`.
@@ -66,21 +66,26 @@ impl<const LOCAL: bool> SheetUnsigned<LOCAL> {
 
 impl<const LOCAL: bool> Kernel for SheetUnsigned<LOCAL> {
     type Packed<const W: usize> = Packed<W>;
-    type Prepared<const W: usize, L: Lane<W>> = Prepared<L>;
+    type Prepared<const W: usize, L: Lane<W>> = LaneRay<L>;
 
     fn pack<const W: usize>(&self, corners: impl Fn(usize) -> [Vec3; 3]) -> Packed<W> {
         sheet::pack(corners)
     }
 
     #[inline(always)]
-    fn prepare<const W: usize, L: Lane<W>>(&self, ray: &Ray) -> Prepared<L> {
-        sheet::prepare(ray)
+    fn lane(block: &Packed<8>, lane: usize) -> Packed<1> {
+        sheet::lane(block, lane)
+    }
+
+    #[inline(always)]
+    fn prepare<const W: usize, L: Lane<W>>(&self, _: &Ray, rays: &LaneRay<L>) -> LaneRay<L> {
+        *rays
     }
 
     #[inline(always)]
     fn intersect<const W: usize, L: Lane<W>>(
         &self,
-        ray: &Prepared<L>,
+        ray: &LaneRay<L>,
         tri: &Packed<W>,
     ) -> Option<LaneHit<W, L>> {
         let crossing = sheet::cross::<W, LOCAL, L>(ray, tri)?;

@@ -14,7 +14,7 @@
 //! again in `f64`, as in the paper, lane by lane. A triangle without area is made one point when it is packed. Nothing here may be fused: rounding is monotone, so fl(ab) − fl(cd) has
 //! the right sign or is 0, and a fused multiply-add breaks exactly that.
 
-use crate::geometry::lanes::{Lane, LaneMask, LaneVec3};
+use crate::geometry::lanes::{Lane, LaneMask, LaneRay, LaneVec3};
 use crate::geometry::{DVec3, Ray, Vec3};
 use crate::registry::Params;
 
@@ -72,14 +72,14 @@ fn edge<const W: usize, L: Lane<W>>(a: L, b: L, c: L, d: L) -> L {
 /// The lanes of `zero` again in `f64`, where both products are exact.
 #[cold]
 fn edge_exact<const W: usize, L: Lane<W>>(zero: u32, rounded: L, a: L, b: L, c: L, d: L) -> L {
-    let [a, b, c, d] = [a, b, c, d].map(|x| x.to_array().map(f64::from));
-    let mut out = rounded.to_array();
-    for (lane, out) in out.iter_mut().enumerate() {
+    L::from_fn(|lane| {
         if zero >> lane & 1 == 1 {
-            *out = (a[lane] * b[lane] - c[lane] * d[lane]) as f32;
+            let [a, b, c, d] = [a, b, c, d].map(|x| f64::from(x.get(lane)));
+            (a * b - c * d) as f32
+        } else {
+            rounded.get(lane)
         }
-    }
-    L::load(&out)
+    })
 }
 
 impl Kernel for Woop {
@@ -95,15 +95,30 @@ impl Kernel for Woop {
     }
 
     #[inline(always)]
-    fn prepare<const W: usize, L: Lane<W>>(&self, ray: &Ray) -> Prepared<L> {
-        let axes = frame(ray.dir);
-        let [dx, dy, dz] = axes.map(|a| ray.dir[a]);
-        let [ox, oy, oz] = axes.map(|a| ray.origin[a]);
+    fn lane(block: &Packed<8>, lane: usize) -> Packed<1> {
+        Packed {
+            corners: [0, 1, 2].map(|i| super::lane_of(&block.corners[i], lane)),
+        }
+    }
+
+    #[inline(always)]
+    fn prepare<const W: usize, L: Lane<W>>(&self, lead: &Ray, rays: &LaneRay<L>) -> Prepared<L> {
+        let axes = frame(lead.dir);
+        let dir = rays.dir.permuted(axes);
         Prepared {
             axes,
-            origin: LaneVec3::splat(Vec3::new(ox, oy, oz)),
-            shear: LaneVec3::splat(Vec3::new(dx / dz, dy / dz, 1.0 / dz)),
+            origin: rays.origin.permuted(axes),
+            shear: LaneVec3 {
+                x: dir.x / dir.z,
+                y: dir.y / dir.z,
+                z: L::splat(1.0) / dir.z,
+            },
         }
+    }
+
+    #[inline(always)]
+    fn same_frame(a: &Ray, b: &Ray) -> bool {
+        frame(a.dir) == frame(b.dir)
     }
 
     #[inline(always)]

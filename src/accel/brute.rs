@@ -1,9 +1,10 @@
 //! Brute force: every triangle, in file order. The judge of all others.
 
 use crate::geometry::Ray;
+use crate::geometry::lanes::Isa;
 use crate::scene::Mesh;
 
-use super::{AcceleratorEntry, Structure, StructureStats, Visitor, finish};
+use super::{AcceleratorEntry, Singles, Structure, StructureStats, Visitor, finish};
 
 pub(super) const ENTRY: AcceleratorEntry = AcceleratorEntry {
     name: "brute",
@@ -25,12 +26,13 @@ pub struct Brute {
 }
 
 impl Structure for Brute {
+    type Items = Singles;
     type Scratch = ();
 
     fn scratch(&self) {}
 
     #[inline(always)]
-    fn traverse<V: Visitor>(&self, ray: &Ray, (): &mut (), visitor: &mut V) {
+    fn traverse<I: Isa, V: Visitor>(&self, ray: &Ray, (): &mut (), visitor: &mut V) {
         visitor.step(
             0,
             true,

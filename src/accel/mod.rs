@@ -21,16 +21,22 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use crate::geometry::lanes::{InstructionSet, Isa};
 use crate::geometry::{Aabb, Hit, Ray};
 use crate::kernel;
 use crate::registry::{Choice, ChoiceError, ParamSpec, Params};
 use crate::scene::Mesh;
 
+mod batch;
 mod brute;
 mod bvh;
+mod bvh_wide;
 mod clip;
 mod grid;
+mod items;
 mod kd_tree;
+mod pages;
+mod query;
 mod record;
 mod sah;
 mod slab;
@@ -40,8 +46,10 @@ mod testbed;
 mod traced;
 mod visit;
 
+pub use batch::Rays;
 pub use brute::Brute;
 pub use bvh::Bvh;
+pub use items::{Blocks, Items, Singles};
 pub use kd_tree::KdTree;
 pub use record::{Outcome, PlaceKind, Recording, Test, Visit};
 pub use traced::finish;
@@ -49,6 +57,8 @@ pub use visit::{Counts, Visitor};
 
 /// A spatial structure over the triangles of one mesh.
 pub trait Structure: Send + Sync + 'static {
+    /// How its triangles lie in memory, and so what the numbers mean that it hands to [`Visitor::test`].
+    type Items: Items;
     /// What one thread needs beside the structure to traverse it, e.g. mailboxes.
     type Scratch: Send;
 
@@ -60,9 +70,20 @@ pub trait Structure: Send + Sync + 'static {
 
     /// Leads `visitor` through every cell or node that `ray` touches, near ones first where the structure can tell.
     ///
-    /// Calls [`Visitor::step`] for each cell or node and [`Visitor::test`] for each triangle it offers; returns at once
+    /// Calls [`Visitor::step`] for each cell or node and [`Visitor::test`] for each item it offers; returns at once
     /// when a test says that the query is finished, and when what is left begins beyond [`Visitor::t_limit`].
-    fn traverse<V: Visitor>(&self, ray: &Ray, scratch: &mut Self::Scratch, visitor: &mut V);
+    fn traverse<I: Isa, V: Visitor>(&self, ray: &Ray, scratch: &mut Self::Scratch, visitor: &mut V);
+
+    /// Answers a batch in the way that suits its rays: here one after another. Right answers are the same in every way.
+    #[inline(always)]
+    fn trace<R: Rays>(&self, batch: &mut R, scratch: &mut Self::Scratch) {
+        for index in 0..batch.rays().len() {
+            let mut visitor = batch.begin(index);
+            let ray = batch.rays()[index];
+            self.traverse::<R::Isa, _>(&ray, scratch, &mut visitor);
+            batch.finish(index, &visitor);
+        }
+    }
 
     /// The box of a place that [`Visitor::step`] named, rounded to `f32`; `None` where the structure has none or no such
     /// place. Asked only where a ray's way is recorded: at most linear in the depth.
@@ -138,6 +159,8 @@ pub struct BuildRequest<'a> {
     pub n: Option<u32>,
     /// Bytes the structure may take; a larger one is refused before it is allocated.
     pub memory_limit: u64,
+    /// The instruction set to trace with.
+    pub set: InstructionSet,
 }
 
 /// Why a structure was not built.
@@ -211,11 +234,16 @@ pub struct AcceleratorEntry {
 }
 
 /// All accelerators, in the order in which they are listed.
-pub const ACCELERATORS: &[AcceleratorEntry] =
-    &[brute::ENTRY, grid::ENTRY, kd_tree::ENTRY, bvh::ENTRY];
+pub const ACCELERATORS: &[AcceleratorEntry] = &[
+    brute::ENTRY,
+    grid::ENTRY,
+    kd_tree::ENTRY,
+    bvh::ENTRY,
+    bvh_wide::ENTRY,
+];
 
 /// The accelerator taken where none is named: the fastest of raylab's own.
-pub const DEFAULT: &str = "bvh";
+pub const DEFAULT: &str = "bvh-wide";
 
 /// Greatest accepted n; DESIGN asks for 512, the format of the cells allows this.
 pub const MAX_N: u32 = 1024;
@@ -253,6 +281,21 @@ pub fn build(
     kernel: &Choice,
     memory_limit: u64,
 ) -> Result<Box<dyn Accelerator>, BuildError> {
+    build_for(InstructionSet::best(), mesh, accel, n, kernel, memory_limit)
+}
+
+/// As [`build`], to be traced with an instruction set: what tests of their equality need.
+///
+/// # Errors
+/// As [`build`].
+pub fn build_for(
+    set: InstructionSet,
+    mesh: &Arc<Mesh>,
+    accel: &Choice,
+    n: Option<u32>,
+    kernel: &Choice,
+    memory_limit: u64,
+) -> Result<Box<dyn Accelerator>, BuildError> {
     let entry = entry(&accel.name)?;
     kernel::parse(&kernel.name)?;
     let n = entry
@@ -264,5 +307,6 @@ pub fn build(
         params: &accel.params,
         n,
         memory_limit,
+        set,
     })
 }

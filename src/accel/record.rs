@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use crate::geometry::{Aabb, Hit};
 
-use super::visit::Counter;
+use super::visit::Watch;
 
 /// What a traversal visits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -128,7 +128,7 @@ impl Recorder {
     }
 }
 
-impl Counter for Recorder {
+impl Watch for Recorder {
     fn begin(&mut self) {
         self.visits.clear();
     }

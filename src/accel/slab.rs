@@ -15,7 +15,8 @@
 //! **Source:** T. Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013.
 //! **Differs:** the pad lies in the reciprocals and thus also on the near side and across the ray, not only on the exit.
 
-use crate::geometry::{Aabb, Ray};
+use crate::geometry::lanes::Lane;
+use crate::geometry::{Aabb, Ray, Vec3};
 
 /// Half-width of the cone in units of the way along the ray's longest axis: 8ε = 16u. The test itself needs 4u.
 const CONE: f32 = 8.0 * f32::EPSILON;
@@ -49,20 +50,29 @@ pub(super) struct SlabRay {
     t_min: f32,
 }
 
+/// The farthest that the ray can be from its origin along an axis while it is inside the scene.
+#[inline(always)]
+fn reach(ray: &Ray, scene: &Aabb) -> f32 {
+    (scene.min - ray.origin)
+        .abs()
+        .max((scene.max - ray.origin).abs())
+        .max_element()
+}
+
+/// Whether nothing can overflow or underflow on its way to `t`.
+#[inline(always)]
+fn is_trusted(ray: &Ray, longest: f32, reach: f32) -> bool {
+    let in_range = |x: f32| x < RANGE && x > 1.0 / RANGE;
+    in_range(longest) && (reach == 0.0 || in_range(reach)) && ray.origin.abs().max_element() < RANGE
+}
+
 impl SlabRay {
     /// Prepares a valid ray for boxes inside `scene`.
     #[inline]
     pub fn new(ray: &Ray, scene: &Aabb) -> Self {
-        // The farthest that the ray can be from its origin along an axis while it is inside the scene.
-        let reach = (scene.min - ray.origin)
-            .abs()
-            .max((scene.max - ray.origin).abs())
-            .max_element();
+        let reach = reach(ray, scene);
         let longest = ray.dir.abs().max_element();
-        let in_range = |x: f32| x < RANGE && x > 1.0 / RANGE;
-        let trusted = in_range(longest)
-            && (reach == 0.0 || in_range(reach))
-            && ray.origin.abs().max_element() < RANGE;
+        let trusted = is_trusted(ray, longest, reach);
         let (origin, dir) = (ray.origin.to_array(), ray.dir.to_array());
         let behind = ray.t_min < 0.0;
         Self {
@@ -113,6 +123,105 @@ impl SlabRay {
     pub fn interval(&self, corners: &Corners, limit: f32) -> Option<(f32, f32)> {
         let (entry, exit) = self.clip(corners, limit);
         (entry <= exit).then_some((entry, exit))
+    }
+}
+
+/// The boxes of up to eight children: for each axis the least and the greatest coordinates, a lane a child.
+pub(super) type WideCorners = [[[f32; 8]; 2]; 3];
+
+/// A [`SlabRay`] in the lanes that test eight boxes at once.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct WideSlabRay<L> {
+    near_origin: [L; 3],
+    far_origin: [L; 3],
+    near_inverse: [L; 3],
+    far_inverse: [L; 3],
+    near: [usize; 3],
+    t_min: L,
+}
+
+impl SlabRay {
+    /// The ray in every lane.
+    #[inline(always)]
+    fn wide<L: Lane<8>>(&self) -> WideSlabRay<L> {
+        let [x, y, z] = &self.slabs;
+        WideSlabRay {
+            near_origin: [x.near_origin, y.near_origin, z.near_origin].map(L::splat),
+            far_origin: [x.far_origin, y.far_origin, z.far_origin].map(L::splat),
+            near_inverse: [x.near_inverse, y.near_inverse, z.near_inverse].map(L::splat),
+            far_inverse: [x.far_inverse, y.far_inverse, z.far_inverse].map(L::splat),
+            near: [x.near & 1, y.near & 1, z.near & 1],
+            t_min: L::splat(self.t_min),
+        }
+    }
+
+    /// As [`SlabRay::new`], for rays that are rare.
+    #[cold]
+    #[inline(never)]
+    fn of_rare(ray: &Ray, scene: &Aabb) -> Self {
+        Self::new(ray, scene)
+    }
+}
+
+impl<L: Lane<8>> WideSlabRay<L> {
+    /// As [`SlabRay::new`], in lanes; the six reciprocals of a ray without thin components are one division.
+    #[inline(always)]
+    pub fn new(ray: &Ray, scene: &Aabb) -> Self {
+        let longest = ray.dir.abs().max_element();
+        let width = CONE * longest;
+        let is_plain = ray.dir.abs().min_element() > 2.0 * width
+            && ray.t_min >= 0.0
+            && is_trusted(ray, longest, reach(ray, scene));
+        if !is_plain {
+            return SlabRay::of_rare(ray, scene).wide();
+        }
+        let sign = Vec3::ONE.copysign(ray.dir);
+        let (near, far) = (ray.dir + sign * width, ray.dir - sign * width);
+        let inverse =
+            L::splat(1.0) / L::load(&[near.x, near.y, near.z, 1.0, far.x, far.y, far.z, 1.0]);
+        let origin = [
+            L::splat(ray.origin.x),
+            L::splat(ray.origin.y),
+            L::splat(ray.origin.z),
+        ];
+        Self {
+            near_origin: origin,
+            far_origin: origin,
+            near_inverse: [
+                L::splat(inverse.get(0)),
+                L::splat(inverse.get(1)),
+                L::splat(inverse.get(2)),
+            ],
+            far_inverse: [
+                L::splat(inverse.get(4)),
+                L::splat(inverse.get(5)),
+                L::splat(inverse.get(6)),
+            ],
+            near: [
+                usize::from(ray.dir.x < 0.0),
+                usize::from(ray.dir.y < 0.0),
+                usize::from(ray.dir.z < 0.0),
+            ],
+            t_min: L::splat(ray.t_min),
+        }
+    }
+
+    /// As [`SlabRay::clip`] for each lane.
+    #[inline(always)]
+    pub fn clip(&self, boxes: &WideCorners, limit: f32) -> (L, L) {
+        let enter = |axis: usize| {
+            let plane = L::load(&boxes[axis][self.near[axis]]);
+            (plane - self.near_origin[axis]) * self.near_inverse[axis]
+        };
+        let leave = |axis: usize| {
+            let plane = L::load(&boxes[axis][self.near[axis] ^ 1]);
+            (plane - self.far_origin[axis]) * self.far_inverse[axis]
+        };
+        // Of two numbers the second is taken where one is NaN, so the known ends of the interval stand last.
+        let entry = enter(1).max(enter(2)).max(enter(0).max(self.t_min));
+        let last = L::splat(limit.min(f32::MAX));
+        let exit = leave(1).min(leave(2)).min(leave(0).min(last));
+        (entry, exit)
     }
 }
 
@@ -188,7 +297,6 @@ impl Slab {
 mod tests {
     use super::super::testbed::Dice;
     use super::*;
-    use crate::geometry::Vec3;
 
     /// A ray and a box of whole numbers, so that all of it can be judged exactly.
     #[derive(Debug)]

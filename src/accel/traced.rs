@@ -2,119 +2,163 @@
 
 use std::sync::Arc;
 
+use crate::geometry::lanes::{InstructionSet, Isa, Portable, Task};
 use crate::geometry::{Hit, Ray};
 use crate::kernel::{self, Kernel, KernelUser};
 use crate::scene::Mesh;
 
+use super::batch::{Answer, Batch};
+use super::items::{Items, Singles};
+use super::query::{Packed, Query};
 use super::record::Recorder;
-use super::visit::{Counted, Counter, PackedMesh, Query, Uncounted};
+use super::visit::{Counted, Watch};
 use super::{Accelerator, BuildError, BuildRequest, Counts, Recording, Structure, StructureStats};
 
-/// Binds `structure` to the kernel that `request` names.
+/// Binds `structure`, which lists triangles, to the kernel that `request` names.
 ///
 /// # Errors
 /// The kernel is not known.
-pub fn finish<S: Structure>(
+pub fn finish<S: Structure<Items = Singles>>(
     structure: S,
     request: &BuildRequest,
 ) -> Result<Box<dyn Accelerator>, BuildError> {
-    struct Bind<S> {
+    let slots: Vec<u32> = (0..request.mesh.len() as u32).collect();
+    finish_in_order(structure, &slots, request)
+}
+
+/// Binds `structure`, whose items hold the triangles with the indices `slots`, to the kernel that `request` names.
+///
+/// # Errors
+/// The kernel is not known.
+pub(super) fn finish_in_order<S: Structure>(
+    structure: S,
+    slots: &[u32],
+    request: &BuildRequest,
+) -> Result<Box<dyn Accelerator>, BuildError> {
+    struct Bind<'a, S> {
         structure: S,
+        slots: &'a [u32],
         mesh: Arc<Mesh>,
+        set: InstructionSet,
     }
-    impl<S: Structure> KernelUser for Bind<S> {
+    impl<S: Structure> KernelUser for Bind<'_, S> {
         type Out = Box<dyn Accelerator>;
         fn with<K: Kernel>(self, kernel: K) -> Self::Out {
-            let triangles = (0..self.mesh.len() as u32)
-                .map(|prim| kernel.pack(|_| self.mesh.corners(prim)))
-                .collect();
             Box::new(Traced {
                 structure: self.structure,
-                kernel,
-                triangles,
-                mesh: self.mesh,
+                packed: Packed {
+                    items: S::Items::pack(&kernel, &self.mesh, self.slots),
+                    kernel,
+                    mesh: self.mesh,
+                },
+                set: self.set,
             })
         }
     }
     let bind = Bind {
         structure,
+        slots,
         mesh: Arc::clone(request.mesh),
+        set: request.set,
     };
     Ok(kernel::dispatch(request.kernel, bind)?)
 }
 
-struct Traced<S, K: Kernel> {
+struct Traced<S: Structure, K: Kernel> {
     structure: S,
-    kernel: K,
-    triangles: Vec<K::Packed<1>>,
-    mesh: Arc<Mesh>,
+    packed: Packed<S::Items, K>,
+    set: InstructionSet,
+}
+
+/// A batch that is traced by the instruction set's own function.
+struct Trace<'a, S: Structure, K: Kernel, A, const OCCLUSION: bool> {
+    traced: &'a Traced<S, K>,
+    rays: &'a [Ray],
+    answers: &'a mut [A],
+}
+
+impl<S: Structure, K: Kernel, A: Answer, const OCCLUSION: bool> Task
+    for Trace<'_, S, K, A, OCCLUSION>
+{
+    type Out = ();
+
+    #[inline(always)]
+    fn run<I: Isa>(self) {
+        let structure = &self.traced.structure;
+        let mut scratch = structure.scratch();
+        let mut batch: Batch<S::Items, K, I, A, OCCLUSION> =
+            Batch::new(&self.traced.packed, self.rays, self.answers);
+        structure.trace(&mut batch, &mut scratch);
+    }
 }
 
 impl<S: Structure, K: Kernel> Traced<S, K> {
-    /// Traces one ray after another and hands each best hit to `done` with the ray's index and the counter.
-    #[inline(always)]
-    fn each<C: Counter, const OCCLUSION: bool>(
-        &self,
-        rays: &[Ray],
-        mut counter: C,
-        mut done: impl FnMut(usize, Hit, &C),
-    ) {
-        let mut scratch = self.structure.scratch();
-        for (i, ray) in rays.iter().enumerate() {
-            let packed = PackedMesh {
-                kernel: &self.kernel,
-                mesh: &self.mesh,
-                triangles: &self.triangles,
-            };
-            let mut query = Query::<K, C, OCCLUSION>::new(packed, ray, &mut counter);
-            self.structure.traverse(ray, &mut scratch, &mut query);
-            let best = query.best;
-            done(i, best, &counter);
-        }
+    fn trace<A: Answer, const OCCLUSION: bool>(&self, rays: &[Ray], answers: &mut [A]) {
+        let task: Trace<S, K, A, OCCLUSION> = Trace {
+            traced: self,
+            rays,
+            answers,
+        };
+        S::Items::run(self.set, task);
     }
 
-    fn counted(&self) -> Counted {
-        Counted::new(self.triangles.len())
+    /// Traces one ray, watched.
+    fn watched<const OCCLUSION: bool>(
+        &self,
+        ray: &Ray,
+        scratch: &mut S::Scratch,
+        watch: &mut dyn Watch,
+    ) -> Hit {
+        watch.begin();
+        let mut query: Query<S::Items, K, Portable, &mut dyn Watch, OCCLUSION> =
+            Query::new(&self.packed, ray, watch);
+        self.structure
+            .traverse::<Portable, _>(ray, scratch, &mut query);
+        query.best
+    }
+
+    /// Traces one ray after another, counting the work of each.
+    fn counted<A: Answer, const OCCLUSION: bool>(
+        &self,
+        rays: &[Ray],
+        answers: &mut [A],
+        counts: &mut [Counts],
+    ) {
+        let mut scratch = self.structure.scratch();
+        let mut counter = Counted::new(self.packed.mesh.len());
+        for ((ray, answer), count) in rays.iter().zip(answers).zip(counts) {
+            let hit = self.watched::<OCCLUSION>(ray, &mut scratch, &mut counter);
+            *answer = A::of(hit);
+            *count = counter.counts;
+        }
     }
 }
 
 impl<S: Structure, K: Kernel> Accelerator for Traced<S, K> {
     fn closest(&self, rays: &[Ray], hits: &mut [Hit]) {
-        self.each::<_, false>(rays, Uncounted, |i, hit, _| hits[i] = hit);
+        self.trace::<_, false>(rays, hits);
     }
 
     fn occluded(&self, rays: &[Ray], blocked: &mut [bool]) {
-        self.each::<_, true>(rays, Uncounted, |i, hit, _| blocked[i] = hit.is_hit());
+        self.trace::<_, true>(rays, blocked);
     }
 
     fn closest_counted(&self, rays: &[Ray], hits: &mut [Hit], counts: &mut [Counts]) {
-        self.each::<_, false>(rays, self.counted(), |i, hit, counter| {
-            hits[i] = hit;
-            counts[i] = counter.counts;
-        });
+        self.counted::<_, false>(rays, hits, counts);
     }
 
     fn occluded_counted(&self, rays: &[Ray], blocked: &mut [bool], counts: &mut [Counts]) {
-        self.each::<_, true>(rays, self.counted(), |i, hit, counter| {
-            blocked[i] = hit.is_hit();
-            counts[i] = counter.counts;
-        });
+        self.counted::<_, true>(rays, blocked, counts);
     }
 
     fn inspect(&self, ray: &Ray) -> Recording {
-        let mut recording = Recording {
-            visits: Vec::new(),
-            hit: Hit::MISS,
-        };
-        let recorder = Recorder::new(S::LEAF);
-        self.each::<_, false>(std::slice::from_ref(ray), recorder, |_, hit, recorder| {
-            recording.hit = hit;
-            recording.visits.clone_from(&recorder.visits);
-        });
-        for visit in &mut recording.visits {
+        let mut recorder = Recorder::new(S::LEAF);
+        let hit = self.watched::<false>(ray, &mut self.structure.scratch(), &mut recorder);
+        let mut visits = recorder.visits;
+        for visit in &mut visits {
             visit.bounds = self.structure.place_bounds(visit.place);
         }
-        recording
+        Recording { visits, hit }
     }
 
     fn stats(&self) -> StructureStats {
@@ -122,10 +166,10 @@ impl<S: Structure, K: Kernel> Accelerator for Traced<S, K> {
     }
 
     fn memory_bytes(&self) -> u64 {
-        self.structure.memory_bytes() + size_of_val(self.triangles.as_slice()) as u64
+        self.structure.memory_bytes() + size_of_val(self.packed.items.as_slice()) as u64
     }
 
     fn validate(&self) -> Result<(), String> {
-        self.structure.validate(&self.mesh)
+        self.structure.validate(&self.packed.mesh)
     }
 }

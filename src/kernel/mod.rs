@@ -47,6 +47,9 @@ pub trait Kernel: Debug + Clone + Send + Sync + 'static {
     /// A ray in the form that the test reads, made once a ray.
     type Prepared<const W: usize, L: Lane<W>>: Copy;
 
+    /// Whether hits are compared more exactly than their `f32` `t` tells, by [`Kernel::within`] and [`Kernel::nearer`].
+    const EXACT_T: bool = false;
+
     /// Packs the triangles whose corners `corners(lane)` gives.
     fn pack<const W: usize>(&self, corners: impl Fn(usize) -> [Vec3; 3]) -> Self::Packed<W>;
 

@@ -87,7 +87,10 @@ impl Kernel for MollerTrumbore {
         let v = ray.dir.dot(q) * inv_det;
         // A zero determinant makes u, v and t infinite or NaN; `u + v <= 1` alone would let -inf + inf through.
         let mask = !det.eq(zero) & u.ge(zero) & v.ge(zero) & (u + v).le(one);
-        mask.any().then(|| LaneHit {
+        if !mask.any() {
+            return None;
+        }
+        Some(LaneHit {
             mask,
             t: e2.dot(q) * inv_det,
             u,

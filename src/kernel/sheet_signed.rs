@@ -86,7 +86,10 @@ impl<const LOCAL: bool> Kernel for SheetSigned<LOCAL> {
         let wc = a.cross(b).dot(crossing.normal);
         let sum = wa + wb + wc;
         let mask = crossing.mask & wa.ge(zero) & wb.ge(zero) & wc.ge(zero) & sum.gt(zero);
-        mask.any().then(|| LaneHit {
+        if !mask.any() {
+            return None;
+        }
+        Some(LaneHit {
             mask,
             t: crossing.t,
             u: wb / sum,

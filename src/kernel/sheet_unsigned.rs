@@ -96,7 +96,10 @@ impl<const LOCAL: bool> Kernel for SheetUnsigned<LOCAL> {
         let wc = a.cross(b).length();
         let excess = (wa + wb + wc - crossing.area).abs();
         let mask = crossing.mask & excess.le(L::splat(self.eps) * crossing.area);
-        mask.any().then(|| LaneHit {
+        if !mask.any() {
+            return None;
+        }
+        Some(LaneHit {
             mask,
             t: crossing.t,
             u: wb / crossing.area,

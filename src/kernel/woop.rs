@@ -11,7 +11,7 @@
 //!
 //! **Source:** S. Woop, C. Benthin and I. Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
 //! **Differs:** no back-face culling, so the winding is not kept by swapping axes. Edge functions that are 0 are computed
-//! again in `f64`, as in the paper, lane by lane. A triangle without area is made one point when it is packed. Nothing here may be fused: rounding is monotone, so fl(ab) − fl(cd) has
+//! again in `f64`, as in the paper, lane by lane, unless two others have opposite signs. A triangle without area is made one point when it is packed. Nothing here may be fused: rounding is monotone, so fl(ab) − fl(cd) has
 //! the right sign or is 0, and a fused multiply-add breaks exactly that.
 
 use crate::geometry::lanes::{Lane, LaneMask, LaneRay, LaneVec3};
@@ -61,6 +61,27 @@ fn frame(dir: Vec3) -> [usize; 3] {
     let d = dir.abs().to_array();
     let z = (1..3).fold(0, |best, a| if d[a] >= d[best] { a } else { best });
     [(z + 1) % 3, (z + 2) % 3, z]
+}
+
+/// A corner relative to the ray's origin, in the frame in which the ray runs along z.
+#[inline(always)]
+fn sheared<const W: usize, L: Lane<W>>(ray: &Prepared<L>, corner: &[[f32; W]; 3]) -> LaneVec3<L> {
+    let [kx, ky, kz] = ray.axes;
+    let x = L::load(&corner[kx]) - ray.origin.x;
+    let y = L::load(&corner[ky]) - ray.origin.y;
+    let z = L::load(&corner[kz]) - ray.origin.z;
+    LaneVec3 {
+        x: x - ray.shear.x * z,
+        y: y - ray.shear.y * z,
+        z,
+    }
+}
+
+/// Whether two of the three have opposite signs.
+#[inline(always)]
+fn apart<const W: usize, L: Lane<W>>(u: L, v: L, w: L) -> L::Mask {
+    let zero = L::splat(0.0);
+    (u.lt(zero) | v.lt(zero) | w.lt(zero)) & (u.gt(zero) | v.gt(zero) | w.gt(zero))
 }
 
 /// fl(fl(ab) − fl(cd)).
@@ -128,41 +149,32 @@ impl Kernel for Woop {
         tri: &Packed<W>,
     ) -> Option<LaneHit<W, L>> {
         let zero = L::splat(0.0);
-        let [kx, ky, kz] = ray.axes;
-        let [a, b, c] = [0, 1, 2].map(|i| {
-            let corner = &tri.corners[i];
-            let x = L::load(&corner[kx]) - ray.origin.x;
-            let y = L::load(&corner[ky]) - ray.origin.y;
-            let z = L::load(&corner[kz]) - ray.origin.z;
-            LaneVec3 {
-                x: x - ray.shear.x * z,
-                y: y - ray.shear.y * z,
-                z,
-            }
-        });
+        let a = sheared::<W, L>(ray, &tri.corners[0]);
+        let b = sheared::<W, L>(ray, &tri.corners[1]);
+        let c = sheared::<W, L>(ray, &tri.corners[2]);
         let mut u = edge(c.x, b.y, c.y, b.x);
         let mut v = edge(a.x, c.y, a.y, c.x);
         let mut w = edge(b.x, a.y, b.y, a.x);
-        let on_edge = (u.eq(zero) | v.eq(zero) | w.eq(zero)).bits();
+        // Opposite signs are right, so a miss is sure; else a 0 may hide a sign.
+        let on_edge = (!apart::<W, L>(u, v, w) & (u.eq(zero) | v.eq(zero) | w.eq(zero))).bits();
         if on_edge != 0 {
             u = edge_exact(on_edge, u, c.x, b.y, c.y, b.x);
             v = edge_exact(on_edge, v, a.x, c.y, a.y, c.x);
             w = edge_exact(on_edge, w, b.x, a.y, b.y, a.x);
         }
-        let some_negative = u.lt(zero) | v.lt(zero) | w.lt(zero);
-        let some_positive = u.gt(zero) | v.gt(zero) | w.gt(zero);
         let det = u + v + w;
         // A NaN passes all of these and gives a NaN t.
-        let mask = !(some_negative & some_positive) & !det.eq(zero);
-        mask.any().then(|| {
-            let inv_det = L::splat(1.0) / det;
-            let z = ray.shear.z;
-            LaneHit {
-                mask,
-                t: (u * (z * a.z) + v * (z * b.z) + w * (z * c.z)) * inv_det,
-                u: v * inv_det,
-                v: w * inv_det,
-            }
+        let mask = !apart::<W, L>(u, v, w) & !det.eq(zero);
+        if !mask.any() {
+            return None;
+        }
+        let inv_det = L::splat(1.0) / det;
+        let z = ray.shear.z;
+        Some(LaneHit {
+            mask,
+            t: (u * (z * a.z) + v * (z * b.z) + w * (z * c.z)) * inv_det,
+            u: v * inv_det,
+            v: w * inv_det,
         })
     }
 

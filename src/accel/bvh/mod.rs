@@ -14,13 +14,14 @@
 //! **Differs:** depth is bounded by the stack's room: where the heuristic would dig deeper, references are halved by
 //! index, and the stack needs no check.
 
+use crate::geometry::lanes::Isa;
 use crate::geometry::{Aabb, Ray};
 use crate::registry::{ParamKind, ParamSpec, Params};
 use crate::scene::Mesh;
 
 use super::slab::SlabRay;
 use super::stack::{Room, Stack, room};
-use super::{AcceleratorEntry, Structure, StructureStats, Visitor, finish};
+use super::{AcceleratorEntry, Singles, Structure, StructureStats, Visitor, finish};
 
 mod binned;
 mod tree;
@@ -70,6 +71,7 @@ impl Bvh {
 }
 
 impl Structure for Bvh {
+    type Items = Singles;
     type Scratch = Room;
 
     fn scratch(&self) -> Room {
@@ -77,7 +79,7 @@ impl Structure for Bvh {
     }
 
     #[inline(always)]
-    fn traverse<V: Visitor>(&self, ray: &Ray, room: &mut Room, visitor: &mut V) {
+    fn traverse<I: Isa, V: Visitor>(&self, ray: &Ray, room: &mut Room, visitor: &mut V) {
         let Some(root) = self.tree.nodes.first() else {
             return;
         };

@@ -19,12 +19,13 @@
 
 use std::marker::PhantomData;
 
+use crate::geometry::lanes::Isa;
 use crate::geometry::{Aabb, Ray, Vec3};
 use crate::registry::{ParamKind, ParamSpec, Params};
 use crate::scene::Mesh;
 
 use super::{
-    Accelerator, AcceleratorEntry, BuildError, BuildRequest, MAX_N, PlaceKind, Resolution,
+    Accelerator, AcceleratorEntry, BuildError, BuildRequest, MAX_N, PlaceKind, Resolution, Singles,
     Structure, StructureStats, Visitor, finish,
 };
 
@@ -172,6 +173,7 @@ impl<M> Grid<M> {
 }
 
 impl<M: Mailbox> Structure for Grid<M> {
+    type Items = Singles;
     type Scratch = M;
 
     const LEAF: PlaceKind = PlaceKind::Cell;
@@ -181,7 +183,7 @@ impl<M: Mailbox> Structure for Grid<M> {
     }
 
     #[inline(always)]
-    fn traverse<V: Visitor>(&self, ray: &Ray, mailbox: &mut M, visitor: &mut V) {
+    fn traverse<I: Isa, V: Visitor>(&self, ray: &Ray, mailbox: &mut M, visitor: &mut V) {
         let Some(mut walk) = Walk::new(&self.lattice, ray) else {
             return;
         };

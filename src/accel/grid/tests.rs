@@ -7,6 +7,7 @@ use proptest::prelude::*;
 use super::super::testbed::{self, Dice, assert_agrees_at, mesh, nasty, rays, soup, sphere};
 use super::super::{Counts, build as build_any, parse};
 use super::*;
+use crate::geometry::lanes::Portable;
 use crate::geometry::{Aabb, DVec3, Hit, Vec3};
 use crate::kernel;
 
@@ -100,6 +101,7 @@ struct Trail {
 }
 
 impl Visitor for Trail {
+    const WATCHED: bool = true;
     fn step(&mut self, place: u64, leaf: bool, _references: u32, entry: f64, exit: f64) {
         assert!(leaf);
         self.cells.push(place);
@@ -116,7 +118,7 @@ impl Visitor for Trail {
 
 fn trail<M: Mailbox>(grid: &Grid<M>, ray: &Ray) -> Trail {
     let mut trail = Trail::default();
-    grid.traverse(ray, &mut M::default(), &mut trail);
+    grid.traverse::<Portable, _>(ray, &mut M::default(), &mut trail);
     trail
 }
 

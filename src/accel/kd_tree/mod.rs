@@ -19,13 +19,14 @@
 //! planes on the faces of a cell are not considered, so no cell is flat unless the scene is; the bonus for empty space
 //! asks for a tenth of the cell, else a fan of triangles around a vertex is trimmed by slivers without end.
 
+use crate::geometry::lanes::Isa;
 use crate::geometry::{Aabb, Ray};
 use crate::registry::{ParamKind, ParamSpec, Params};
 use crate::scene::Mesh;
 
 use super::slab::{SlabRay, corners};
 use super::stack::{MAX_DEPTH, Room, Stack, room};
-use super::{AcceleratorEntry, Structure, StructureStats, Visitor, finish};
+use super::{AcceleratorEntry, Singles, Structure, StructureStats, Visitor, finish};
 
 mod build;
 mod part;
@@ -134,6 +135,7 @@ fn halves(cell: &Aabb, node: Node) -> [Aabb; 2] {
 }
 
 impl Structure for KdTree {
+    type Items = Singles;
     type Scratch = Room;
 
     fn scratch(&self) -> Room {
@@ -141,7 +143,7 @@ impl Structure for KdTree {
     }
 
     #[inline(always)]
-    fn traverse<V: Visitor>(&self, ray: &Ray, room: &mut Room, visitor: &mut V) {
+    fn traverse<I: Isa, V: Visitor>(&self, ray: &Ray, room: &mut Room, visitor: &mut V) {
         let slabs = SlabRay::new(ray, &self.bounds);
         let Some((mut entry, mut exit)) = slabs.interval(&corners(self.bounds), visitor.t_limit())
         else {

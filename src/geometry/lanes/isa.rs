@@ -4,6 +4,9 @@
 //! InstructionSet::best() ── run(task) ──> the processor is asked ──> one function compiled for the set ──> task.run::<Avx512>()
 //! ```
 //!
+//! In lane code a closure that is called more than once, or passed to `array::map`, may be left out of line and is then
+//! compiled for no set, ten times slower: write it as a function with `#[inline(always)]`.
+//!
 //! A [`Task`] is inlined whole into the function that is compiled for a set, so all of its arithmetic is. The types of a
 //! set's lanes can be named only through [`Isa`], and a task gets one only from [`InstructionSet::run`]: that is why the
 //! lanes may rely on the processor.

@@ -1,0 +1,88 @@
+//! Batches: the rays that a structure traces in the way that suits them, and where their answers go.
+
+use crate::geometry::lanes::Isa;
+use crate::geometry::{Hit, Ray};
+use crate::kernel::Kernel;
+
+use super::items::Items;
+use super::query::{Packed, Query};
+use super::visit::{Uncounted, Visitor};
+
+/// What is kept of a query.
+pub(super) trait Answer: Copy {
+    /// The answer that the query's best hit gives.
+    fn of(best: Hit) -> Self;
+}
+
+impl Answer for Hit {
+    #[inline(always)]
+    fn of(best: Hit) -> Self {
+        best
+    }
+}
+
+impl Answer for bool {
+    #[inline(always)]
+    fn of(best: Hit) -> Self {
+        best.is_hit()
+    }
+}
+
+/// The rays of a batch and a visitor for each.
+pub trait Rays {
+    /// The lanes to trace with.
+    type Isa: Isa;
+    /// What a traversal of one ray reports to.
+    type Visitor: Visitor;
+
+    /// The rays.
+    fn rays(&self) -> &[Ray];
+
+    /// The visitor of the ray with this index, which is handed back by [`Rays::finish`] when the traversal is over.
+    fn begin(&self, index: usize) -> Self::Visitor;
+
+    /// Takes the answer of a ray.
+    fn finish(&mut self, index: usize, visitor: &Self::Visitor);
+}
+
+/// Rays bound to a kernel and a query.
+pub(super) struct Batch<'a, T: Items, K: Kernel, I: Isa, A, const OCCLUSION: bool> {
+    packed: &'a Packed<T, K>,
+    rays: &'a [Ray],
+    answers: &'a mut [A],
+    lanes: std::marker::PhantomData<I>,
+}
+
+impl<'a, T: Items, K: Kernel, I: Isa, A, const OCCLUSION: bool> Batch<'a, T, K, I, A, OCCLUSION> {
+    /// `answers` are as many as `rays`.
+    pub fn new(packed: &'a Packed<T, K>, rays: &'a [Ray], answers: &'a mut [A]) -> Self {
+        Self {
+            packed,
+            rays,
+            answers,
+            lanes: std::marker::PhantomData,
+        }
+    }
+}
+
+impl<'a, T: Items, K: Kernel, I: Isa, A: Answer, const OCCLUSION: bool> Rays
+    for Batch<'a, T, K, I, A, OCCLUSION>
+{
+    type Isa = I;
+    type Visitor = Query<'a, T, K, I, Uncounted, OCCLUSION>;
+
+    #[inline(always)]
+    fn rays(&self) -> &[Ray] {
+        self.rays
+    }
+
+    #[inline(always)]
+    fn begin(&self, index: usize) -> Self::Visitor {
+        Query::new(self.packed, &self.rays[index], Uncounted)
+    }
+
+    #[inline(always)]
+    fn finish(&mut self, index: usize, visitor: &Self::Visitor) {
+        self.answers[index] = A::of(visitor.best);
+    }
+}

@@ -1,0 +1,299 @@
+//! A tree of boxes with up to eight children a node, which are tested at once; its leaves hold blocks of eight triangles.
+//!
+//! ```text
+//! node, 256 bytes:  | x least ×8 | x greatest ×8 | y ... | z ... | children ×8 |
+//!
+//! binary tree:        o                       eight-ary:       o
+//!                   /   \                                 / / / \ \ \
+//!                  o     o      -- collapse -->          L  o L  L o L
+//!                 / \   / \
+//! ```
+//!
+//! The traversal tests the eight boxes of a node, keeps those that are met in one vector of (entry | lane) keys, sorts it by
+//! a network and puts all but the nearest child on a stack.
+//!
+//! **Source:** I. Wald, C. Benthin and S. Boulos, "Getting Rid of Packets", 2008, for wide trees; V. Fuetterling et al.,
+//! "Accelerated Single Ray Tracing for Wide Vector Units", HPG 2017, for sorting keys in registers; H. Ylitie, T. Karras
+//! and S. Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017, for the collapse.
+//! **Differs:** boxes are tested conservatively, so a watertight kernel stays so.
+
+use crate::geometry::lanes::{Isa, Lane, LaneMask};
+use crate::geometry::{Aabb, Ray};
+use crate::scene::Mesh;
+
+use super::bvh::{Build, binary};
+use super::slab::{WideCorners, WideSlabRay};
+use super::traced::finish_in_order;
+use super::{AcceleratorEntry, Blocks, Structure, StructureStats, Visitor};
+
+mod collapse;
+mod stack;
+mod validate;
+
+use stack::Stack;
+
+pub(super) const ENTRY: AcceleratorEntry = AcceleratorEntry {
+    name: "bvh-wide",
+    about: "A tree of boxes with eight children a node, tested at once, and triangles in blocks of eight.",
+    paper: "Wald, Benthin and Boulos 2008, Getting Rid of Packets",
+    params: &[Build::PARAM],
+    control: false,
+    resolution: None,
+    build: |request| {
+        let tree = binary(request.mesh, Build::of(request.params), 1);
+        let (wide, slots) = BvhWide::collapse(&tree, request.mesh);
+        finish_in_order(wide, &slots, request)
+    },
+};
+
+/// What is in a child's box: a node, or from one to seven blocks, or nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(transparent)]
+struct Child(u32);
+
+impl Child {
+    /// Nothing: a box that no ray meets.
+    const NONE: Self = Self(Self::LEAF);
+    /// Set where it is no node.
+    const LEAF: u32 = 1 << 31;
+    /// Most blocks of a leaf.
+    const MOST: u32 = 7;
+
+    fn node(index: usize) -> Self {
+        Self(index as u32)
+    }
+
+    fn leaf(first: usize, blocks: usize) -> Self {
+        Self(Self::LEAF | (first as u32) << 3 | blocks as u32)
+    }
+
+    fn is_leaf(self) -> bool {
+        self.0 & Self::LEAF != 0
+    }
+
+    /// The blocks of a leaf.
+    fn blocks(self) -> std::ops::Range<u32> {
+        let first = (self.0 & !Self::LEAF) >> 3;
+        first..first + (self.0 & Self::MOST)
+    }
+
+    /// The number by which visitors know it: nodes first, then leaves by their first block.
+    fn place(self) -> u64 {
+        if self.is_leaf() {
+            LEAVES | u64::from(self.blocks().start)
+        } else {
+            u64::from(self.0)
+        }
+    }
+}
+
+/// Where the numbers of leaves begin.
+const LEAVES: u64 = 1 << 32;
+
+/// The boxes of up to eight children, and the children.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(C, align(64))]
+struct Node {
+    boxes: WideCorners,
+    children: [u32; 8],
+}
+
+/// The structure `bvh-wide`.
+#[derive(Debug, PartialEq)]
+pub struct BvhWide {
+    nodes: Vec<Node>,
+    root: Child,
+    bounds: Aabb,
+    /// Triangles in each block; the rest of its lanes repeat the last.
+    filled: Vec<u8>,
+    depth: u32,
+}
+
+impl BvhWide {
+    /// The triangles of a leaf.
+    fn references(&self, leaf: Child) -> u32 {
+        let blocks = leaf.blocks().start as usize..leaf.blocks().end as usize;
+        self.filled[blocks]
+            .iter()
+            .map(|count| u32::from(*count))
+            .sum()
+    }
+
+    /// All children that there are, and the root, each with its box.
+    fn children(&self) -> impl Iterator<Item = (Child, Aabb)> {
+        let root = std::iter::once((self.root, self.bounds));
+        root.chain(self.nodes.iter().flat_map(Node::children))
+            .filter(|(child, _)| *child != Child::NONE)
+    }
+}
+
+impl Node {
+    /// A node without children.
+    const EMPTY: Self = Self {
+        boxes: [[[f32::INFINITY; 8], [f32::NEG_INFINITY; 8]]; 3],
+        children: [Child::NONE.0; 8],
+    };
+
+    /// Puts `child` into a lane.
+    fn set(&mut self, lane: usize, child: Child, bounds: &Aabb) {
+        for axis in 0..3 {
+            self.boxes[axis][0][lane] = bounds.min[axis];
+            self.boxes[axis][1][lane] = bounds.max[axis];
+        }
+        self.children[lane] = child.0;
+    }
+
+    fn children(&self) -> impl Iterator<Item = (Child, Aabb)> {
+        (0..8).map(|lane| {
+            let corner = |side: usize| [0, 1, 2].map(|axis| self.boxes[axis][side][lane]);
+            let bounds = Aabb {
+                min: corner(0).into(),
+                max: corner(1).into(),
+            };
+            (Child(self.children[lane]), bounds)
+        })
+    }
+}
+
+impl Structure for BvhWide {
+    type Items = Blocks;
+    type Scratch = Stack;
+
+    fn scratch(&self) -> Stack {
+        Stack::new()
+    }
+
+    #[inline(always)]
+    fn traverse<I: Isa, V: Visitor>(&self, ray: &Ray, stack: &mut Stack, visitor: &mut V) {
+        let slabs = WideSlabRay::<I::X8>::new(ray, &self.bounds);
+        let mut waiting = 0;
+        let mut next = self.root;
+        let mut entry = ray.t_min;
+        loop {
+            if V::WATCHED {
+                let references = if next.is_leaf() {
+                    self.references(next)
+                } else {
+                    0
+                };
+                visitor.step(
+                    next.place(),
+                    next.is_leaf(),
+                    references,
+                    f64::from(entry),
+                    f64::from(visitor.t_limit()),
+                );
+            }
+            if next.is_leaf() {
+                for block in next.blocks() {
+                    if visitor.test(block) {
+                        return;
+                    }
+                }
+            } else {
+                let node = &self.nodes[next.0 as usize];
+                let (entries, exits) = slabs.clip(&node.boxes, visitor.t_limit());
+                let met = entries.le(exits).bits();
+                if met != 0 {
+                    if met & (met - 1) == 0 {
+                        let lane = met.trailing_zeros() as usize & 7;
+                        next = Child(node.children[lane]);
+                        if V::WATCHED {
+                            entry = entries.get(lane);
+                        }
+                    } else {
+                        waiting = stack.push::<I>(waiting, entries, met, &node.children);
+                        (next, entry) = stack.at(waiting);
+                    }
+                    continue;
+                }
+            }
+            loop {
+                if waiting == 0 {
+                    return;
+                }
+                waiting -= 1;
+                (next, entry) = stack.at(waiting);
+                // Keys are entries, but not less than 0.
+                if entry <= visitor.t_limit().max(0.0) {
+                    break;
+                }
+            }
+        }
+    }
+
+    fn place_bounds(&self, place: u64) -> Option<Aabb> {
+        let found = self.children().find(|(child, _)| child.place() == place);
+        found.map(|(_, bounds)| bounds)
+    }
+
+    fn stats(&self) -> StructureStats {
+        let leaves = || self.children().filter(|(child, _)| child.is_leaf());
+        StructureStats {
+            cells: self.nodes.len() as u64 + leaves().count() as u64,
+            empty_cells: 0,
+            references: self.filled.iter().map(|count| u64::from(*count)).sum(),
+            depth: self.depth,
+            longest_list: leaves()
+                .map(|(leaf, _)| self.references(leaf))
+                .max()
+                .unwrap_or(0),
+            dims: None,
+        }
+    }
+
+    fn memory_bytes(&self) -> u64 {
+        (size_of_val(self.nodes.as_slice()) + self.filled.len()) as u64
+    }
+
+    fn validate(&self, mesh: &Mesh) -> Result<(), String> {
+        validate::validate(self, mesh)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testbed::{assert_agrees, built, mesh, nasty, ray_count, rays, soup, sphere};
+    use proptest::prelude::*;
+
+    #[test]
+    fn nasty_meshes_are_answered_as_by_brute_force() {
+        for (name, mesh) in nasty() {
+            assert_agrees(name, &mesh, "bvh-wide", &rays(&mesh, ray_count(&mesh), 7));
+        }
+    }
+
+    #[test]
+    fn leaves_are_filled_well_and_nodes_are_wide() {
+        let mesh = mesh(&sphere(64));
+        let stats = built(&mesh, "bvh-wide", "woop").stats();
+        assert_eq!(stats.references, mesh.len() as u64);
+        // 8,192 triangles: a leaf holds from one block on, and a node has nearly eight children.
+        assert!(stats.cells < 2200, "{stats:?}");
+        assert!(stats.depth <= 6, "{stats:?}");
+    }
+
+    #[test]
+    fn a_place_is_known_by_its_box() {
+        let mesh = mesh(&sphere(16));
+        let accel = built(&mesh, "bvh-wide", "woop");
+        for ray in rays(&mesh, 50, 3) {
+            for visit in accel.inspect(&ray).visits {
+                assert!(visit.bounds.is_some(), "{visit:?}");
+            }
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(48))]
+        #[test]
+        fn any_soup_is_answered_as_by_brute_force(
+            count in 0_u32..120,
+            size in prop_oneof![Just(0.0_f32), 1e-4_f32..2.0],
+            seed in any::<u64>(),
+        ) {
+            let mesh = mesh(&soup(count, size, seed));
+            assert_agrees("soup", &mesh, "bvh-wide", &rays(&mesh, 200, seed ^ 1));
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! The children that wait while a ray goes down a wide tree, each with its key.
+
+use crate::geometry::lanes::{Isa, Lane};
+
+use super::super::stack::MAX_DEPTH;
+use super::Child;
+
+/// Most children that wait: seven a level, and room for a whole vector behind the last.
+const ROOM: usize = 7 * MAX_DEPTH + 8;
+
+/// Room for the children that wait: what a thread needs to traverse a wide tree.
+pub struct Stack {
+    children: [u32; ROOM],
+    keys: [f32; ROOM],
+}
+
+/// The bits of a key that are an entry's; the others are the lane's number.
+const ENTRY_BITS: u32 = !7;
+
+impl Stack {
+    pub(super) fn new() -> Self {
+        Self {
+            children: [Child::NONE.0; ROOM],
+            keys: [0.0; ROOM],
+        }
+    }
+
+    /// Puts those of `children` whose bit is set in `met` above the first `waiting`, the nearest on top; returns the place
+    /// of the nearest.
+    #[inline(always)]
+    pub(super) fn push<I: Isa>(
+        &mut self,
+        waiting: usize,
+        entries: I::X8,
+        met: u32,
+        children: &[u32; 8],
+    ) -> usize {
+        let places = waiting..waiting + 8;
+        let (Some(above), Some(keys)) = (
+            self.children[places.clone()].first_chunk_mut(),
+            self.keys[places].first_chunk_mut(),
+        ) else {
+            return waiting;
+        };
+        let positive = entries.max(I::X8::splat(0.0));
+        I::greatest_first(positive, met, children, above, keys);
+        waiting + met.count_ones() as usize - 1
+    }
+
+    /// The child at a place, and a bound on its entry: not later than that, where that is positive.
+    #[inline(always)]
+    pub(super) fn at(&self, place: usize) -> (Child, f32) {
+        let key = self.keys[place].to_bits() & ENTRY_BITS;
+        (Child(self.children[place]), f32::from_bits(key))
+    }
+}

@@ -1,0 +1,49 @@
+//! What a wide tree promises, checked.
+
+use crate::geometry::Aabb;
+use crate::scene::Mesh;
+
+use super::super::stack::MAX_DEPTH;
+use super::{BvhWide, Child};
+
+/// Checks boxes, depth, and that each node and block is some child's exactly once.
+pub(super) fn validate(tree: &BvhWide, mesh: &Mesh) -> Result<(), String> {
+    if tree.depth as usize > MAX_DEPTH {
+        return Err(format!(
+            "depth {} exceeds the stack's {MAX_DEPTH}",
+            tree.depth
+        ));
+    }
+    if mesh.is_empty() {
+        let is_empty = tree.root == Child::NONE;
+        return is_empty
+            .then_some(())
+            .ok_or_else(|| "an empty mesh has a tree".to_owned());
+    }
+    let (mut nodes, mut blocks) = (
+        vec![0_u32; tree.nodes.len()],
+        vec![0_u32; tree.filled.len()],
+    );
+    for (child, bounds) in tree.children() {
+        if child.is_leaf() {
+            for block in child.blocks() {
+                blocks[block as usize] += 1;
+            }
+            continue;
+        }
+        nodes[child.0 as usize] += 1;
+        for (part, part_bounds) in tree.nodes[child.0 as usize].children() {
+            if part != Child::NONE && !contains(&bounds, &part_bounds) {
+                return Err(format!("node {} does not contain a child", child.0));
+            }
+        }
+    }
+    if nodes.iter().chain(&blocks).any(|count| *count != 1) {
+        return Err("a node or block has not exactly one parent".to_owned());
+    }
+    Ok(())
+}
+
+fn contains(outer: &Aabb, inner: &Aabb) -> bool {
+    outer.min.cmple(inner.min).all() && outer.max.cmpge(inner.max).all()
+}

@@ -1,0 +1,171 @@
+//! Items: how the triangles of a structure lie in memory, one by one or in blocks of eight.
+//!
+//! ```text
+//! Singles   | 0 | 1 | 2 | ...                   one a triangle, in file order; a structure lists indices
+//! Blocks    | 7 2 9 9 9 9 9 9 | 0 4 4 4 4 4 4 4 |   eight lanes a block, in the structure's order
+//! ```
+//!
+//! A block is tested by one instruction stream for all its lanes, compiled for the instruction set of the processor. Lanes
+//! that are left repeat the last triangle: its hit is offered again and is not preferred to itself.
+
+use crate::geometry::Ray;
+use crate::geometry::lanes::{InstructionSet, Isa, Lane, LaneMask, LaneRay, Portable, Task};
+use crate::kernel::Kernel;
+use crate::scene::Mesh;
+
+use super::pages;
+use super::query::Query;
+use super::visit::Counter;
+
+/// Lanes of a block.
+pub(super) const LANES: usize = 8;
+
+/// How a structure's triangles lie in memory.
+pub trait Items: Sized + Send + Sync + 'static {
+    /// What is tested at once.
+    type Item<K: Kernel>: Send + Sync;
+    /// A ray prepared for the test.
+    type Prepared<K: Kernel, I: Isa>: Copy;
+
+    /// Packs the triangles with these indices, in this order; for blocks whole ones, see [`fill`].
+    fn pack<K: Kernel>(kernel: &K, mesh: &Mesh, slots: &[u32]) -> Vec<Self::Item<K>>;
+
+    /// Prepares a ray.
+    fn prepare<K: Kernel, I: Isa>(kernel: &K, ray: &Ray) -> Self::Prepared<K, I>;
+
+    /// Tests an item; returns true when the query is finished.
+    fn test<K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool>(
+        query: &mut Query<'_, Self, K, I, C, OCCLUSION>,
+        item: u32,
+    ) -> bool;
+
+    /// Runs `task` with the lanes of `set` where these items use lanes, else without any.
+    fn run<T: Task>(set: InstructionSet, task: T) -> T::Out;
+}
+
+/// One triangle an item, in file order.
+#[derive(Debug, Clone, Copy)]
+pub struct Singles;
+
+/// Eight triangles an item.
+#[derive(Debug, Clone, Copy)]
+pub struct Blocks;
+
+/// Eight triangles and their indices.
+#[derive(Debug, Clone)]
+#[repr(C, align(64))]
+pub struct Block<P> {
+    triangles: P,
+    prims: [u32; LANES],
+}
+
+/// Appends whole blocks with these triangles, of which there is at least one, to `slots`.
+pub(super) fn fill(slots: &mut Vec<u32>, prims: &[u32]) {
+    slots.extend_from_slice(prims);
+    if let Some(last) = prims.last() {
+        slots.resize(slots.len().next_multiple_of(LANES), *last);
+    }
+}
+
+impl Items for Singles {
+    type Item<K: Kernel> = K::Packed<1>;
+    type Prepared<K: Kernel, I: Isa> = K::Prepared<1, f32>;
+
+    fn pack<K: Kernel>(kernel: &K, mesh: &Mesh, slots: &[u32]) -> Vec<K::Packed<1>> {
+        let pack = |prim: &u32| kernel.pack(|_| mesh.corners(*prim));
+        slots.iter().map(pack).collect()
+    }
+
+    #[inline(always)]
+    fn prepare<K: Kernel, I: Isa>(kernel: &K, ray: &Ray) -> K::Prepared<1, f32> {
+        kernel.prepare(ray, &LaneRay::splat(ray))
+    }
+
+    #[inline(always)]
+    fn test<K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool>(
+        query: &mut Query<'_, Self, K, I, C, OCCLUSION>,
+        prim: u32,
+    ) -> bool {
+        let packed = query.packed;
+        let found = packed
+            .kernel
+            .intersect(&query.prepared, &packed.items[prim as usize]);
+        let Some(hit) = found else {
+            query.counter.test(prim, None, false);
+            return false;
+        };
+        let taken = query.offer(prim, &hit, 0);
+        query.counter.test(prim, Some(hit.t), taken);
+        OCCLUSION && taken
+    }
+
+    #[inline]
+    fn run<T: Task>(_: InstructionSet, task: T) -> T::Out {
+        task.run::<Portable>()
+    }
+}
+
+impl Items for Blocks {
+    type Item<K: Kernel> = Block<K::Packed<LANES>>;
+    type Prepared<K: Kernel, I: Isa> = K::Prepared<LANES, I::X8>;
+
+    fn pack<K: Kernel>(kernel: &K, mesh: &Mesh, slots: &[u32]) -> Vec<Self::Item<K>> {
+        let mut blocks = pages::with_capacity(slots.len() / LANES);
+        let (whole, _) = slots.as_chunks::<LANES>();
+        blocks.extend(whole.iter().map(|prims| Block {
+            triangles: kernel.pack(|lane| mesh.corners(prims[lane])),
+            prims: *prims,
+        }));
+        blocks
+    }
+
+    #[inline(always)]
+    fn prepare<K: Kernel, I: Isa>(kernel: &K, ray: &Ray) -> K::Prepared<LANES, I::X8> {
+        kernel.prepare(ray, &LaneRay::splat(ray))
+    }
+
+    #[inline(always)]
+    fn test<K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool>(
+        query: &mut Query<'_, Self, K, I, C, OCCLUSION>,
+        item: u32,
+    ) -> bool {
+        let packed = query.packed;
+        let block = &packed.items[item as usize];
+        let found = packed.kernel.intersect(&query.prepared, &block.triangles);
+        if C::COUNTS {
+            let mut finished = false;
+            let is_repeated = |lane: usize| lane > 0 && block.prims[lane - 1] == block.prims[lane];
+            for lane in (0..LANES).filter(|lane| !is_repeated(*lane)) {
+                let prim = block.prims[lane];
+                let hit = found
+                    .as_ref()
+                    .filter(|hit| hit.mask.bits() >> lane & 1 == 1);
+                let taken = hit.is_some_and(|hit| !finished && query.offer(prim, hit, lane));
+                query
+                    .counter
+                    .test(prim, hit.map(|hit| hit.t.get(lane)), taken);
+                finished |= OCCLUSION && taken;
+            }
+            return finished;
+        }
+        let Some(hit) = found else {
+            return false;
+        };
+        // NaN is left out.
+        let near = hit.t.ge(I::X8::splat(query.t_least())) & hit.t.le(I::X8::splat(query.t_most()));
+        let mut met = (hit.mask & near).bits();
+        while met != 0 {
+            let lane = met.trailing_zeros() as usize;
+            met &= met - 1;
+            if query.offer(block.prims[lane & (LANES - 1)], &hit, lane) && OCCLUSION {
+                return true;
+            }
+        }
+        false
+    }
+
+    #[inline]
+    fn run<T: Task>(set: InstructionSet, task: T) -> T::Out {
+        set.run(task)
+    }
+}

@@ -1,0 +1,122 @@
+//! A query of one ray: it keeps the nearest hit of what a traversal offers.
+
+use crate::geometry::lanes::{Isa, Lane};
+use crate::geometry::{Hit, Ray};
+use crate::kernel::{Kernel, LaneHit};
+use crate::scene::Mesh;
+
+use super::items::Items;
+use super::visit::{Counter, Visitor};
+
+/// The triangles of a mesh, packed for a kernel as a structure lists them.
+pub struct Packed<T: Items, K: Kernel> {
+    pub kernel: K,
+    pub mesh: std::sync::Arc<Mesh>,
+    pub items: Vec<T::Item<K>>,
+}
+
+/// Keeps the nearest hit. `OCCLUSION`: any hit will do.
+pub struct Query<'a, T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool> {
+    pub packed: &'a Packed<T, K>,
+    pub ray: &'a Ray,
+    pub prepared: T::Prepared<K, I>,
+    /// The answer so far.
+    pub best: Hit,
+    limit: f32,
+    pub counter: C,
+}
+
+impl<'a, T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool>
+    Query<'a, T, K, I, C, OCCLUSION>
+{
+    #[inline(always)]
+    pub fn new(packed: &'a Packed<T, K>, ray: &'a Ray, counter: C) -> Self {
+        Self {
+            prepared: T::prepare::<K, I>(&packed.kernel, ray),
+            packed,
+            ray,
+            best: Hit::MISS,
+            limit: ray.t_max,
+            counter,
+        }
+    }
+
+    /// Greatest `t` that can still be preferred, as far as an `f32` tells; a kernel that compares more exactly is asked
+    /// about every hit.
+    #[inline(always)]
+    pub fn t_most(&self) -> f32 {
+        if K::EXACT_T {
+            f32::INFINITY
+        } else {
+            self.best.t.min(self.ray.t_max)
+        }
+    }
+
+    /// Least `t` that can be accepted, with the same proviso.
+    #[inline(always)]
+    pub fn t_least(&self) -> f32 {
+        if K::EXACT_T {
+            f32::NEG_INFINITY
+        } else {
+            self.ray.t_min
+        }
+    }
+
+    /// Takes the hit of `lane` if it is nearer, or equally near with a lower index; for occlusion any within the interval.
+    /// Whether it was taken.
+    #[inline(always)]
+    pub fn offer<const W: usize, L: Lane<W>>(
+        &mut self,
+        prim: u32,
+        hit: &LaneHit<W, L>,
+        lane: usize,
+    ) -> bool {
+        let Packed { kernel, mesh, .. } = self.packed;
+        let hit = Hit {
+            t: hit.t.get(lane),
+            u: hit.u.get(lane),
+            v: hit.v.get(lane),
+            prim,
+        };
+        if !kernel.within(mesh, self.ray, &hit) {
+            return false;
+        }
+        if OCCLUSION {
+            self.best.prim = prim;
+            return true;
+        }
+        if kernel.nearer(mesh, self.ray, &hit, &self.best) {
+            self.best = hit;
+            let error = kernel.t_error(self.ray, &mesh.corners(prim), hit.t);
+            self.limit = self.limit.min(hit.t + error);
+            return true;
+        }
+        false
+    }
+}
+
+impl<T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool> Visitor
+    for Query<'_, T, K, I, C, OCCLUSION>
+{
+    const WATCHED: bool = C::COUNTS;
+
+    #[inline(always)]
+    fn step(&mut self, place: u64, leaf: bool, references: u32, entry: f64, exit: f64) {
+        self.counter.step(place, leaf, references, entry, exit);
+    }
+
+    #[inline(always)]
+    fn test(&mut self, item: u32) -> bool {
+        T::test(self, item)
+    }
+
+    #[inline(always)]
+    fn skipped(&mut self, prim: u32) {
+        self.counter.skipped(prim);
+    }
+
+    #[inline(always)]
+    fn t_limit(&self) -> f32 {
+        self.limit
+    }
+}

@@ -37,6 +37,8 @@ pub enum Command {
     Inspect(InspectArgs),
     /// Count what each kernel decides wrongly, by exact arithmetic, beside its speed
     Accuracy(AccuracyArgs),
+    /// Try every kernel and accelerator where methods are known to break, and compare with what is known
+    Stability(StabilityArgs),
     /// Write a ray set to a file
     Rays(RaysArgs),
     /// Trace the rays of a file and write their hits
@@ -63,6 +65,8 @@ pub enum Registry {
     Kernels,
     /// Ray sets
     Rays,
+    /// Cases of the stability suite
+    Cases,
     /// Export formats of reports
     Formats,
     /// What a rendered picture can show
@@ -259,6 +263,38 @@ pub struct AccuracyArgs {
     #[arg(long)]
     pub json: bool,
     /// Seed of everything random
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    pub seed: u64,
+    /// Print nothing but the result
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// Arguments of `stability`.
+#[derive(Debug, Args)]
+pub struct StabilityArgs {
+    /// Cases, separated by commas; see `raylab list cases` [default: all]
+    #[arg(long, value_name = "CASES")]
+    pub case: Vec<String>,
+    /// Kernels, separated by commas [default: all]
+    #[arg(long, value_name = "KERNELS")]
+    pub kernel: Vec<String>,
+    /// Accelerators, separated by commas; brute force, which judges them, is always there [default: all]
+    #[arg(long, value_name = "ACCELS")]
+    pub accel: Vec<String>,
+    /// Try accelerators with `woop` and `exact` only
+    #[arg(long)]
+    pub quick: bool,
+    /// Write the map as JSON, SVG and PNG into this directory, and for each failing cell the least scene and ray
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Print the map with every cell as JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Threads: a number, or `max`
+    #[arg(long, value_name = "COUNT", default_value = "max")]
+    pub threads: String,
+    /// Seed of all cases; the bounds of known failures are those of seed 1
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     pub seed: u64,
     /// Print nothing but the result

@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use crate::accel::ACCELERATORS;
 use crate::kernel::KERNELS;
+use crate::lab::stability::CASES;
 use crate::registry::{ParamKind, ParamSpec};
 use crate::report::FORMATS;
 use crate::scene::SCENES;
@@ -44,6 +45,10 @@ fn rows(registry: Registry) -> Vec<Value> {
         Registry::Channels => CHANNELS
             .iter()
             .map(|c| json!({ "name": c.name, "about": c.about, "params": [] }))
+            .collect(),
+        Registry::Cases => CASES
+            .iter()
+            .map(|c| with_params(json!(c), c.params))
             .collect(),
         Registry::Formats => FORMATS
             .iter()

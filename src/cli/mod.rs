@@ -20,6 +20,7 @@ mod progress;
 mod rays;
 mod render;
 mod session;
+mod stability;
 mod sweep;
 mod table;
 
@@ -57,6 +58,7 @@ pub fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Completions { shell }) => completions(shell),
         Some(Command::Man) => manual(),
         Some(Command::Accuracy(args)) => accuracy::run(&args),
+        Some(Command::Stability(args)) => stability::run(&args),
         Some(Command::Sweep(args)) => sweep::run(&args),
         Some(Command::Report(args)) => export::run(&args),
     }

@@ -33,6 +33,7 @@ mod resolutions;
 mod sampling;
 mod speed;
 mod spread;
+pub mod stability;
 mod subset;
 mod sweep;
 

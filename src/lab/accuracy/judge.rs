@@ -48,7 +48,7 @@ enum Truth {
 
 /// What the oracle says of a list of rays.
 #[derive(Debug)]
-pub(super) struct Truths {
+pub(in crate::lab) struct Truths {
     truths: Vec<Truth>,
     /// Largest absolute coordinate of the mesh.
     extent: f64,
@@ -56,10 +56,12 @@ pub(super) struct Truths {
 
 /// What an answer is worth.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Worth {
+pub(in crate::lab) enum Worth {
     /// Right; the error of t in ulp.
     Right(f64),
+    /// Nothing is hit, and the method says so.
     RightMiss,
+    /// See the table above, as the rest.
     Leak,
     Phantom,
     WrongSurface,
@@ -117,6 +119,23 @@ impl Truths {
         };
         found.t_ulp = UlpSpread::of(errors);
         found
+    }
+
+    /// What the answer to ray `i` of the list is worth.
+    pub fn worth_of(&self, i: usize, ray: &Ray, hit: &Hit) -> Worth {
+        self.worth(&self.truths[i], ray, hit)
+    }
+
+    /// Whether ray `i` and its answer both hit, but not in the same point within rounding, whichever triangle is named.
+    pub fn astray(&self, i: usize, ray: &Ray, hit: &Hit) -> bool {
+        match &self.truths[i] {
+            Truth::Hit { t, .. } if hit.is_hit() => {
+                let off = (f64::from(hit.t) - t).abs();
+                // Both are false for NaN, which is astray.
+                !(off <= ulp(*t) || self.same_point(ray, *t, off))
+            }
+            _ => false,
+        }
     }
 
     fn worth(&self, truth: &Truth, ray: &Ray, hit: &Hit) -> Worth {

@@ -14,7 +14,7 @@
 //! **Known bias.** What is judged is kernel and accelerator together; with an accelerator that obeys its rule it is the
 //! kernel, except that a phantom outside its triangle's cell may be met by one structure and not by another.
 
-mod judge;
+pub(in crate::lab) mod judge;
 mod moved;
 mod record;
 

@@ -1,6 +1,6 @@
 //! Batches: the rays that a structure traces in the way that suits them, and where their answers go.
 
-use crate::geometry::lanes::Isa;
+use crate::geometry::lanes::{Isa, prefetch};
 use crate::geometry::{Hit, Ray};
 use crate::kernel::Kernel;
 
@@ -41,6 +41,9 @@ pub trait Rays {
     /// The visitor of the ray with this index, which is handed back by [`Rays::finish`] when the traversal is over.
     fn begin(&self, index: usize) -> Self::Visitor;
 
+    /// Asks the memory for an item that will be tested soon.
+    fn prefetch(&self, item: u32);
+
     /// Takes the answer of a ray.
     fn finish(&mut self, index: usize, visitor: &Self::Visitor);
 }
@@ -79,6 +82,12 @@ impl<'a, T: Items, K: Kernel, I: Isa, A: Answer, const OCCLUSION: bool> Rays
     #[inline(always)]
     fn begin(&self, index: usize) -> Self::Visitor {
         Query::new(self.packed, &self.rays[index], Uncounted)
+    }
+
+    #[inline(always)]
+    fn prefetch(&self, item: u32) {
+        let place = self.packed.items.as_ptr().wrapping_add(item as usize);
+        prefetch(place, size_of::<T::Item<K>>().div_ceil(64));
     }
 
     #[inline(always)]

@@ -140,6 +140,7 @@ impl BvhWide {
             bounds: mesh.bounds(),
             filled: collapse.filled,
             depth: collapse.depth,
+            way: None,
         };
         (wide, collapse.slots)
     }

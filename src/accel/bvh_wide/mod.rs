@@ -17,31 +17,37 @@
 //! and S. Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017, for the collapse.
 //! **Differs:** boxes are tested conservatively, so a watertight kernel stays so.
 
-use crate::geometry::lanes::{Isa, Lane, LaneMask};
+use crate::geometry::lanes::Isa;
 use crate::geometry::{Aabb, Ray};
 use crate::scene::Mesh;
 
 use super::bvh::{Build, binary};
-use super::slab::{WideCorners, WideSlabRay};
+use super::slab::WideCorners;
 use super::traced::finish_in_order;
-use super::{AcceleratorEntry, Blocks, Structure, StructureStats, Visitor};
+use super::{AcceleratorEntry, Blocks, Rays, Structure, StructureStats, Visitor};
 
 mod collapse;
+mod interleaved;
 mod stack;
 mod validate;
+mod walk;
+mod way;
 
-use stack::Stack;
+use stack::{Stacks, stacks};
+use walk::Walk;
+use way::Way;
 
 pub(super) const ENTRY: AcceleratorEntry = AcceleratorEntry {
     name: "bvh-wide",
     about: "A tree of boxes with eight children a node, tested at once, and triangles in blocks of eight.",
     paper: "Wald, Benthin and Boulos 2008, Getting Rid of Packets",
-    params: &[Build::PARAM],
+    params: &[Build::PARAM, Way::PARAM],
     control: false,
     resolution: None,
     build: |request| {
         let tree = binary(request.mesh, Build::of(request.params), 1);
-        let (wide, slots) = BvhWide::collapse(&tree, request.mesh);
+        let (mut wide, slots) = BvhWide::collapse(&tree, request.mesh);
+        wide.way = Way::of(request.params);
         finish_in_order(wide, &slots, request)
     },
 };
@@ -107,6 +113,8 @@ pub struct BvhWide {
     /// Triangles in each block; the rest of its lanes repeat the last.
     filled: Vec<u8>,
     depth: u32,
+    /// The way that was asked for; `None`: the one that suits a batch.
+    way: Option<Way>,
 }
 
 impl BvhWide {
@@ -155,70 +163,36 @@ impl Node {
     }
 }
 
+/// Traces one ray after another.
+#[inline(always)]
+fn single<R: Rays>(tree: &BvhWide, batch: &mut R, stacks: &mut Box<Stacks>) {
+    for index in 0..batch.rays().len() {
+        let mut visitor = batch.begin(index);
+        let ray = batch.rays()[index];
+        tree.traverse::<R::Isa, _>(&ray, stacks, &mut visitor);
+        batch.finish(index, &visitor);
+    }
+}
+
 impl Structure for BvhWide {
     type Items = Blocks;
-    type Scratch = Stack;
+    type Scratch = Box<Stacks>;
 
-    fn scratch(&self) -> Stack {
-        Stack::new()
+    fn scratch(&self) -> Box<Stacks> {
+        stacks()
     }
 
     #[inline(always)]
-    fn traverse<I: Isa, V: Visitor>(&self, ray: &Ray, stack: &mut Stack, visitor: &mut V) {
-        let slabs = WideSlabRay::<I::X8>::new(ray, &self.bounds);
-        let mut waiting = 0;
-        let mut next = self.root;
-        let mut entry = ray.t_min;
-        loop {
-            if V::WATCHED {
-                let references = if next.is_leaf() {
-                    self.references(next)
-                } else {
-                    0
-                };
-                visitor.step(
-                    next.place(),
-                    next.is_leaf(),
-                    references,
-                    f64::from(entry),
-                    f64::from(visitor.t_limit()),
-                );
-            }
-            if next.is_leaf() {
-                for block in next.blocks() {
-                    if visitor.test(block) {
-                        return;
-                    }
-                }
-            } else {
-                let node = &self.nodes[next.0 as usize];
-                let (entries, exits) = slabs.clip(&node.boxes, visitor.t_limit());
-                let met = entries.le(exits).bits();
-                if met != 0 {
-                    if met & (met - 1) == 0 {
-                        let lane = met.trailing_zeros() as usize & 7;
-                        next = Child(node.children[lane]);
-                        if V::WATCHED {
-                            entry = entries.get(lane);
-                        }
-                    } else {
-                        waiting = stack.push::<I>(waiting, entries, met, &node.children);
-                        (next, entry) = stack.at(waiting);
-                    }
-                    continue;
-                }
-            }
-            loop {
-                if waiting == 0 {
-                    return;
-                }
-                waiting -= 1;
-                (next, entry) = stack.at(waiting);
-                // Keys are entries, but not less than 0.
-                if entry <= visitor.t_limit().max(0.0) {
-                    break;
-                }
-            }
+    fn traverse<I: Isa, V: Visitor>(&self, ray: &Ray, stacks: &mut Box<Stacks>, visitor: &mut V) {
+        let mut walk = Walk::<I>::new(self, ray);
+        while walk.step(self, &mut stacks[0], visitor) {}
+    }
+
+    #[inline(always)]
+    fn trace<R: Rays>(&self, batch: &mut R, stacks: &mut Box<Stacks>) {
+        match self.way.unwrap_or_else(|| way::choose(self, batch.rays())) {
+            Way::Single => single(self, batch, stacks),
+            Way::Interleaved => interleaved::trace(self, batch, stacks),
         }
     }
 

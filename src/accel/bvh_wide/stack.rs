@@ -8,7 +8,7 @@ use super::Child;
 /// Most children that wait: seven a level, and room for a whole vector behind the last.
 const ROOM: usize = 7 * MAX_DEPTH + 8;
 
-/// Room for the children that wait: what a thread needs to traverse a wide tree.
+/// Room for the children that wait for one ray.
 pub struct Stack {
     children: [u32; ROOM],
     keys: [f32; ROOM],
@@ -17,14 +17,22 @@ pub struct Stack {
 /// The bits of a key that are an entry's; the others are the lane's number.
 const ENTRY_BITS: u32 = !7;
 
-impl Stack {
-    pub(super) fn new() -> Self {
-        Self {
-            children: [Child::NONE.0; ROOM],
-            keys: [0.0; ROOM],
-        }
-    }
+/// Rays that are interleaved.
+pub(super) const FLIGHTS: usize = 16;
 
+/// A stack for each ray that is under way: what a thread needs to traverse a wide tree.
+pub type Stacks = [Stack; FLIGHTS];
+
+/// Empty stacks.
+pub(super) fn stacks() -> Box<Stacks> {
+    let empty = || Stack {
+        children: [Child::NONE.0; ROOM],
+        keys: [0.0; ROOM],
+    };
+    Box::new(std::array::from_fn(|_| empty()))
+}
+
+impl Stack {
     /// Puts those of `children` whose bit is set in `met` above the first `waiting`, the nearest on top; returns the place
     /// of the nearest.
     #[inline(always)]

@@ -1,0 +1,82 @@
+//! Several rays take turns: while one is at a place, the memory fetches the next places of the others.
+//!
+//! ```text
+//! flights:  ray 0   ray 1   ray 2   ...   ray 15
+//!           step -> step -> step -> ... -> step -> step ...      each ends by asking for what it will read next;
+//!                                                                a ray that is done makes room for the next of the batch
+//! ```
+//!
+//! **Source:** the idea of hiding a cache miss behind other lookups is that of O. Kocberber, B. Falsafi and B. Grot,
+//! "Asynchronous Memory Access Chaining", VLDB 2015. **Differs:** a ray is a state that is stepped, there is no queue.
+
+use crate::geometry::lanes::prefetch;
+
+use super::super::Rays;
+use super::stack::{FLIGHTS, Stacks};
+use super::walk::Walk;
+use super::{BvhWide, Child, Node};
+
+/// A ray under way.
+struct Flight<R: Rays> {
+    index: usize,
+    /// Which stack is its own.
+    stack: usize,
+    walk: Walk<R::Isa>,
+    visitor: R::Visitor,
+}
+
+impl<R: Rays> Flight<R> {
+    #[inline(always)]
+    fn new(tree: &BvhWide, batch: &R, index: usize, stack: usize) -> Self {
+        Self {
+            index,
+            stack,
+            walk: Walk::new(tree, &batch.rays()[index]),
+            visitor: batch.begin(index),
+        }
+    }
+}
+
+/// Traces all rays of `batch`.
+#[inline(always)]
+pub(super) fn trace<R: Rays>(tree: &BvhWide, batch: &mut R, stacks: &mut Stacks) {
+    let count = batch.rays().len();
+    let mut waiting = FLIGHTS.min(count)..count;
+    let mut flights = Vec::with_capacity(FLIGHTS);
+    for index in 0..waiting.start {
+        flights.push(Flight::new(tree, batch, index, index));
+    }
+    let mut turn = 0;
+    while let Some(flight) = flights.get_mut(turn) {
+        let goes_on = flight.walk.step(
+            tree,
+            &mut stacks[flight.stack % FLIGHTS],
+            &mut flight.visitor,
+        );
+        if goes_on {
+            fetch(tree, batch, flight.walk.next);
+        } else {
+            batch.finish(flight.index, &flight.visitor);
+            if let Some(index) = waiting.next() {
+                *flight = Flight::new(tree, batch, index, flight.stack);
+            } else {
+                flights.swap_remove(turn);
+            }
+        }
+        turn += 1;
+        if turn >= flights.len() {
+            turn = 0;
+        }
+    }
+}
+
+/// Asks for what a visit of `child` reads first.
+#[inline(always)]
+fn fetch<R: Rays>(tree: &BvhWide, batch: &R, child: Child) {
+    if child.is_leaf() {
+        batch.prefetch(child.blocks().start);
+    } else {
+        let node = tree.nodes.as_ptr().wrapping_add(child.0 as usize);
+        prefetch(node, size_of::<Node>() / 64);
+    }
+}

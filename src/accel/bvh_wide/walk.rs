@@ -1,0 +1,92 @@
+//! The way of one ray through a wide tree, place by place, so that several rays can take turns.
+
+use crate::geometry::Ray;
+use crate::geometry::lanes::{Isa, Lane, LaneMask};
+
+use super::super::Visitor;
+use super::super::slab::WideSlabRay;
+use super::stack::Stack;
+use super::{BvhWide, Child};
+
+/// Where a ray is.
+pub(super) struct Walk<I: Isa> {
+    slabs: WideSlabRay<I::X8>,
+    /// What is visited next.
+    pub next: Child,
+    /// Its entry, or a bound below it.
+    entry: f32,
+    /// Children on the stack.
+    waiting: usize,
+}
+
+impl<I: Isa> Walk<I> {
+    /// Before the root.
+    #[inline(always)]
+    pub fn new(tree: &BvhWide, ray: &Ray) -> Self {
+        Self {
+            slabs: WideSlabRay::new(ray, &tree.bounds),
+            next: tree.root,
+            entry: ray.t_min,
+            waiting: 0,
+        }
+    }
+
+    /// Visits the next place; false when the traversal is over.
+    #[inline(always)]
+    pub fn step<V: Visitor>(&mut self, tree: &BvhWide, stack: &mut Stack, visitor: &mut V) -> bool {
+        if V::WATCHED {
+            self.report(tree, visitor);
+        }
+        if self.next.is_leaf() {
+            for block in self.next.blocks() {
+                if visitor.test(block) {
+                    return false;
+                }
+            }
+        } else {
+            let node = &tree.nodes[self.next.0 as usize];
+            let (entries, exits) = self.slabs.clip(&node.boxes, visitor.t_limit());
+            let met = entries.le(exits).bits();
+            if met != 0 {
+                if met & (met - 1) == 0 {
+                    let lane = met.trailing_zeros() as usize & 7;
+                    self.next = Child(node.children[lane]);
+                    if V::WATCHED {
+                        self.entry = entries.get(lane);
+                    }
+                } else {
+                    self.waiting = stack.push::<I>(self.waiting, entries, met, &node.children);
+                    (self.next, self.entry) = stack.at(self.waiting);
+                }
+                return true;
+            }
+        }
+        self.pop(stack, visitor.t_limit())
+    }
+
+    /// Takes the nearest child that waits and begins at `limit` or before; those beyond it are dropped. False if none does.
+    #[inline(always)]
+    fn pop(&mut self, stack: &Stack, limit: f32) -> bool {
+        // Keys are entries, but not less than 0.
+        let limit = limit.max(0.0);
+        while self.waiting > 0 {
+            self.waiting -= 1;
+            (self.next, self.entry) = stack.at(self.waiting);
+            if self.entry <= limit {
+                return true;
+            }
+        }
+        false
+    }
+
+    fn report<V: Visitor>(&self, tree: &BvhWide, visitor: &mut V) {
+        let is_leaf = self.next.is_leaf();
+        let references = if is_leaf {
+            tree.references(self.next)
+        } else {
+            0
+        };
+        let (entry, exit) = (f64::from(self.entry), f64::from(visitor.t_limit()));
+        visitor.step(self.next.place(), is_leaf, references, entry, exit);
+    }
+}

@@ -5,6 +5,7 @@ use crate::geometry::{Hit, Ray};
 use crate::kernel::Kernel;
 
 use super::items::Items;
+use super::packet::{Bundle, Packet, Work};
 use super::query::{Packed, Query};
 use super::visit::{Uncounted, Visitor};
 
@@ -29,20 +30,34 @@ impl Answer for bool {
 }
 
 /// The rays of a batch and a visitor for each.
-pub trait Rays {
+pub trait Rays<'a> {
     /// The lanes to trace with.
     type Isa: Isa;
     /// What a traversal of one ray reports to.
     type Visitor: Visitor;
 
     /// The rays.
-    fn rays(&self) -> &[Ray];
+    fn rays(&self) -> &'a [Ray];
 
     /// The visitor of the ray with this index, which is handed back by [`Rays::finish`] when the traversal is over.
     fn begin(&self, index: usize) -> Self::Visitor;
 
     /// Asks the memory for an item that will be tested soon.
     fn prefetch(&self, item: u32);
+
+    /// What a traversal of a packet reports to.
+    type Packet: Visitor;
+
+    /// The visitor of a packet, the first ray of which has index `first`; handed back by [`Rays::finish_packet`]. `None`
+    /// where the kernel wants its rays one by one.
+    fn begin_packet(
+        &self,
+        bundle: &Bundle<'a, <Self::Isa as Isa>::Rays>,
+        first: usize,
+    ) -> Option<Self::Packet>;
+
+    /// Takes the answers of a packet; returns what it cost.
+    fn finish_packet(&mut self, packet: &Self::Packet) -> Work;
 
     /// Takes the answer of a ray.
     fn finish(&mut self, index: usize, visitor: &Self::Visitor);
@@ -68,14 +83,14 @@ impl<'a, T: Items, K: Kernel, I: Isa, A, const OCCLUSION: bool> Batch<'a, T, K, 
     }
 }
 
-impl<'a, T: Items, K: Kernel, I: Isa, A: Answer, const OCCLUSION: bool> Rays
+impl<'a, T: Items, K: Kernel, I: Isa, A: Answer, const OCCLUSION: bool> Rays<'a>
     for Batch<'a, T, K, I, A, OCCLUSION>
 {
     type Isa = I;
     type Visitor = Query<'a, T, K, I, Uncounted, OCCLUSION>;
 
     #[inline(always)]
-    fn rays(&self) -> &[Ray] {
+    fn rays(&self) -> &'a [Ray] {
         self.rays
     }
 
@@ -88,6 +103,26 @@ impl<'a, T: Items, K: Kernel, I: Isa, A: Answer, const OCCLUSION: bool> Rays
     fn prefetch(&self, item: u32) {
         let place = self.packed.items.as_ptr().wrapping_add(item as usize);
         prefetch(place, size_of::<T::Item<K>>().div_ceil(64));
+    }
+
+    type Packet = Packet<'a, T, K, I, OCCLUSION>;
+
+    #[inline(always)]
+    fn begin_packet(&self, bundle: &Bundle<'a, I::Rays>, first: usize) -> Option<Self::Packet> {
+        if bundle.suits::<K>() {
+            Some(Packet::new(self.packed, bundle, first))
+        } else {
+            None
+        }
+    }
+
+    #[inline(always)]
+    fn finish_packet(&mut self, packet: &Self::Packet) -> Work {
+        let answers = &mut self.answers[packet.first..][..packet.len()];
+        for (answer, best) in answers.iter_mut().zip(&packet.best) {
+            *answer = A::of(*best);
+        }
+        packet.work
     }
 
     #[inline(always)]

@@ -9,10 +9,13 @@
 //! that are left repeat the last triangle: its hit is offered again and is not preferred to itself.
 
 use crate::geometry::Ray;
-use crate::geometry::lanes::{InstructionSet, Isa, Lane, LaneMask, LaneRay, Portable, Task};
+use crate::geometry::lanes::{
+    InstructionSet, Isa, Lane, LaneMask, LaneRay, LaneVec3, Portable, Task,
+};
 use crate::kernel::Kernel;
 use crate::scene::Mesh;
 
+use super::packet::{self, Packet};
 use super::pages;
 use super::query::Query;
 use super::visit::Counter;
@@ -38,6 +41,12 @@ pub trait Items: Sized + Send + Sync + 'static {
         query: &mut Query<'_, Self, K, I, C, OCCLUSION>,
         item: u32,
     ) -> bool;
+
+    /// Tests an item against the rays of a packet.
+    fn test_packet<K: Kernel, I: Isa, const OCCLUSION: bool>(
+        packet: &mut Packet<'_, Self, K, I, OCCLUSION>,
+        item: u32,
+    );
 
     /// Runs `task` with the lanes of `set` where these items use lanes, else without any.
     fn run<T: Task>(set: InstructionSet, task: T) -> T::Out;
@@ -97,6 +106,15 @@ impl Items for Singles {
         let taken = query.offer(prim, &hit, 0);
         query.counter.test(prim, Some(hit.t), taken);
         OCCLUSION && taken
+    }
+
+    #[inline(always)]
+    fn test_packet<K: Kernel, I: Isa, const OCCLUSION: bool>(
+        packet: &mut Packet<'_, Self, K, I, OCCLUSION>,
+        prim: u32,
+    ) {
+        let packed = packet.packed;
+        packet.test_triangle(prim, &packed.items[prim as usize]);
     }
 
     #[inline]
@@ -162,6 +180,30 @@ impl Items for Blocks {
             }
         }
         false
+    }
+
+    #[inline(always)]
+    fn test_packet<K: Kernel, I: Isa, const OCCLUSION: bool>(
+        packet: &mut Packet<'_, Self, K, I, OCCLUSION>,
+        item: u32,
+    ) {
+        let packed = packet.packed;
+        let block = &packed.items[item as usize];
+        let origin = LaneVec3::<I::X8>::splat(packet.origin());
+        let [a, b, c] = K::corners::<I::X8>(&block.triangles);
+        let corners = [a.minus(origin), b.minus(origin), c.minus(origin)];
+        let mut met = packet::can_hit(&corners, &packet.dirs);
+        let mut last = None;
+        while met != 0 {
+            let lane = met.trailing_zeros() as usize & (LANES - 1);
+            met &= met - 1;
+            let prim = block.prims[lane];
+            // The lanes that are left over repeat the last triangle.
+            if last != Some(prim) {
+                packet.test_triangle(prim, &K::lane(&block.triangles, lane));
+            }
+            last = Some(prim);
+        }
     }
 
     #[inline]

@@ -35,6 +35,7 @@ mod clip;
 mod grid;
 mod items;
 mod kd_tree;
+mod packet;
 mod pages;
 mod query;
 mod record;
@@ -76,7 +77,7 @@ pub trait Structure: Send + Sync + 'static {
 
     /// Answers a batch in the way that suits its rays: here one after another. Right answers are the same in every way.
     #[inline(always)]
-    fn trace<R: Rays>(&self, batch: &mut R, scratch: &mut Self::Scratch) {
+    fn trace<'a, R: Rays<'a>>(&self, batch: &mut R, scratch: &mut Self::Scratch) {
         for index in 0..batch.rays().len() {
             let mut visitor = batch.begin(index);
             let ray = batch.rays()[index];

@@ -71,28 +71,44 @@ impl<'a, T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool>
         hit: &LaneHit<W, L>,
         lane: usize,
     ) -> bool {
-        let Packed { kernel, mesh, .. } = self.packed;
         let hit = Hit {
             t: hit.t.get(lane),
             u: hit.u.get(lane),
             v: hit.v.get(lane),
             prim,
         };
-        if !kernel.within(mesh, self.ray, &hit) {
-            return false;
-        }
-        if OCCLUSION {
-            self.best.prim = prim;
-            return true;
-        }
-        if kernel.nearer(mesh, self.ray, &hit, &self.best) {
-            self.best = hit;
-            let error = kernel.t_error(self.ray, &mesh.corners(prim), hit.t);
-            self.limit = self.limit.min(hit.t + error);
-            return true;
-        }
-        false
+        let Packed { kernel, mesh, .. } = self.packed;
+        let (best, limit) = (&mut self.best, &mut self.limit);
+        take::<K, OCCLUSION>(kernel, mesh, self.ray, hit, best, limit)
     }
+}
+
+/// Puts `hit` into `best` if it is to be preferred, and lowers `limit` accordingly; for occlusion to the least, since
+/// nothing more can change the answer. Whether it did.
+#[inline(always)]
+pub(super) fn take<K: Kernel, const OCCLUSION: bool>(
+    kernel: &K,
+    mesh: &Mesh,
+    ray: &Ray,
+    hit: Hit,
+    best: &mut Hit,
+    limit: &mut f32,
+) -> bool {
+    if !kernel.within(mesh, ray, &hit) {
+        return false;
+    }
+    if OCCLUSION {
+        best.prim = hit.prim;
+        *limit = f32::NEG_INFINITY;
+        return true;
+    }
+    if kernel.nearer(mesh, ray, &hit, best) {
+        *best = hit;
+        let error = kernel.t_error(ray, &mesh.corners(hit.prim), hit.t);
+        *limit = limit.min(hit.t + error);
+        return true;
+    }
+    false
 }
 
 impl<T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool> Visitor

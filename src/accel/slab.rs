@@ -18,6 +18,8 @@
 use crate::geometry::lanes::Lane;
 use crate::geometry::{Aabb, Ray, Vec3};
 
+use super::packet::Bundle;
+
 /// Half-width of the cone in units of the way along the ray's longest axis: 8ε = 16u. The test itself needs 4u.
 const CONE: f32 = 8.0 * f32::EPSILON;
 
@@ -205,10 +207,11 @@ impl<L: Lane<8>> WideSlabRay<L> {
             t_min: L::splat(ray.t_min),
         }
     }
+}
 
-    /// As [`SlabRay::clip`] for each lane.
+impl<L: Lane<8>> Clip<L> for WideSlabRay<L> {
     #[inline(always)]
-    pub fn clip(&self, boxes: &WideCorners, limit: f32) -> (L, L) {
+    fn clip(&self, boxes: &WideCorners, limit: f32) -> (L, L) {
         let enter = |axis: usize| {
             let plane = L::load(&boxes[axis][self.near[axis]]);
             (plane - self.near_origin[axis]) * self.near_inverse[axis]
@@ -222,6 +225,118 @@ impl<L: Lane<8>> WideSlabRay<L> {
         let last = L::splat(limit.min(f32::MAX));
         let exit = leave(1).min(leave(2)).min(leave(0).min(last));
         (entry, exit)
+    }
+}
+
+/// The slabs of rays with a common origin: an interval that encloses what [`WideSlabRay`] computes for each of them.
+///
+/// Rounding is monotone, so a box that one of the rays meets by its own test is met by this one.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PacketSlabs<L> {
+    origin: [L; 3],
+    /// Least and greatest reciprocals.
+    near_inverse: [[L; 2]; 3],
+    far_inverse: [[L; 2]; 3],
+    near: [usize; 3],
+    t_min: L,
+}
+
+impl<L: Lane<8>> PacketSlabs<L> {
+    /// Of the rays of `bundle`; `None` where their directions differ in a sign or a ray is not plain.
+    #[inline(always)]
+    pub fn new<R: Lane<1>>(bundle: &Bundle<R>, scene: &Aabb) -> Option<Self> {
+        let lead = &bundle.rays[0];
+        let reach = reach(lead, scene);
+        let sign = Vec3::ONE.copysign(lead.dir);
+        // Components by size, where all signs agree: the nearer to 0 first.
+        let [least, greatest] = bundle.interval;
+        let (small, large) = (
+            (least * sign).min(greatest * sign),
+            (least * sign).max(greatest * sign),
+        );
+        let [shortest, longest] = bundle.longest;
+        // What a rounding of the width leaves, for every ray of the bundle.
+        let is_plain = small.min_element() > 2.0 * CONE * longest
+            && is_trusted(lead, shortest, reach)
+            && is_trusted(lead, longest, reach);
+        let mut t_min = f32::INFINITY;
+        for ray in bundle.rays {
+            t_min = if ray.t_min < t_min { ray.t_min } else { t_min };
+        }
+        if !is_plain || t_min < 0.0 {
+            return None;
+        }
+        // Each ray's own lie between: every step of the way to them is monotone.
+        let (narrow, wide) = (CONE * shortest, CONE * longest);
+        let near = [
+            (large + wide).recip() * sign,
+            (small + narrow).recip() * sign,
+        ];
+        let far = [
+            (large - narrow).recip() * sign,
+            (small - wide).recip() * sign,
+        ];
+        Some(Self {
+            origin: [
+                L::splat(lead.origin.x),
+                L::splat(lead.origin.y),
+                L::splat(lead.origin.z),
+            ],
+            near_inverse: Self::bounds(near),
+            far_inverse: Self::bounds(far),
+            near: [
+                usize::from(sign.x < 0.0),
+                usize::from(sign.y < 0.0),
+                usize::from(sign.z < 0.0),
+            ],
+            t_min: L::splat(t_min),
+        })
+    }
+
+    #[inline(always)]
+    fn bounds([a, b]: [Vec3; 2]) -> [[L; 2]; 3] {
+        let (least, greatest) = (a.min(b), a.max(b));
+        [
+            [L::splat(least.x), L::splat(greatest.x)],
+            [L::splat(least.y), L::splat(greatest.y)],
+            [L::splat(least.z), L::splat(greatest.z)],
+        ]
+    }
+
+    /// Earliest entry into the near side of a slab over all rays.
+    #[inline(always)]
+    fn enter(&self, boxes: &WideCorners, axis: usize) -> L {
+        let plane = L::load(&boxes[axis][self.near[axis]]) - self.origin[axis];
+        let [least, greatest] = self.near_inverse[axis];
+        (plane * least).min(plane * greatest)
+    }
+
+    /// Latest exit from the far side of a slab over all rays.
+    #[inline(always)]
+    fn leave(&self, boxes: &WideCorners, axis: usize) -> L {
+        let plane = L::load(&boxes[axis][self.near[axis] ^ 1]) - self.origin[axis];
+        let [least, greatest] = self.far_inverse[axis];
+        (plane * least).max(plane * greatest)
+    }
+}
+
+/// What clips eight boxes at once.
+pub(super) trait Clip<L> {
+    /// The entry into and the exit from each box, within the interval that `limit` ends; a box is missed if the first is
+    /// greater than the second.
+    fn clip(&self, boxes: &WideCorners, limit: f32) -> (L, L);
+}
+
+impl<L: Lane<8>> Clip<L> for PacketSlabs<L> {
+    #[inline(always)]
+    fn clip(&self, boxes: &WideCorners, limit: f32) -> (L, L) {
+        let entry = self.enter(boxes, 1).max(self.enter(boxes, 2));
+        let exit = self.leave(boxes, 1).min(self.leave(boxes, 2));
+        let last = L::splat(limit.min(f32::MAX));
+        (
+            entry.max(self.enter(boxes, 0).max(self.t_min)),
+            exit.min(self.leave(boxes, 0).min(last)),
+        )
     }
 }
 

@@ -68,6 +68,21 @@ pub trait Lane<const W: usize>:
     /// `self` where it is less, else `other`; so `other` where either is NaN.
     #[must_use]
     fn min(self, other: Self) -> Self;
+    /// The least number; any of them where one is NaN.
+    #[inline(always)]
+    fn least(self) -> f32 {
+        let mut least = self.get(0);
+        for lane in 1..Self::N {
+            let x = self.get(lane);
+            least = if x < least { x } else { least };
+        }
+        least
+    }
+    /// The greatest number; any of them where one is NaN.
+    #[inline(always)]
+    fn greatest(self) -> f32 {
+        -(-self).least()
+    }
     /// Absolute value.
     #[must_use]
     fn abs(self) -> Self;

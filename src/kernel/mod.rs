@@ -10,7 +10,7 @@ use std::fmt::Debug;
 
 use serde::Serialize;
 
-use crate::geometry::lanes::{Lane, LaneRay};
+use crate::geometry::lanes::{Lane, LaneRay, LaneVec3};
 use crate::geometry::{DVec3, Hit, Ray, Vec3};
 use crate::registry::{Choice, ChoiceError, ParamSpec};
 use crate::scene::Mesh;
@@ -56,6 +56,15 @@ pub trait Kernel: Debug + Clone + Send + Sync + 'static {
     /// One triangle of a block.
     fn lane(block: &Self::Packed<8>, lane: usize) -> Self::Packed<1>;
 
+    /// Whether rays with a common origin may be tested as a packet: what a block holds tells the corners.
+    const PACKETS: bool = false;
+
+    /// The corners of a block's triangles, off by no more than a rounding of an edge; asked only where
+    /// [`Kernel::PACKETS`] says so.
+    fn corners<L: Lane<8>>(_: &Self::Packed<8>) -> [LaneVec3<L>; 3] {
+        [LaneVec3::splat(Vec3::ZERO); 3]
+    }
+
     /// Prepares valid rays, one a lane: the same in each, or those of a packet. `lead` is one of them; the others agree
     /// with it by [`Kernel::same_frame`].
     fn prepare<const W: usize, L: Lane<W>>(
@@ -64,9 +73,9 @@ pub trait Kernel: Debug + Clone + Send + Sync + 'static {
         rays: &LaneRay<L>,
     ) -> Self::Prepared<W, L>;
 
-    /// Whether two rays may be prepared together.
+    /// Whether rays with these directions may be prepared together with `lead`.
     #[inline(always)]
-    fn same_frame(_: &Ray, _: &Ray) -> bool {
+    fn same_frame<L: Lane<1>>(_lead: &Ray, _dirs: &LaneVec3<L>) -> bool {
         true
     }
 

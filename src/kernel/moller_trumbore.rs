@@ -63,6 +63,19 @@ impl Kernel for MollerTrumbore {
         }
     }
 
+    const PACKETS: bool = true;
+
+    #[inline(always)]
+    fn corners<L: Lane<8>>(block: &Packed<8>) -> [LaneVec3<L>; 3] {
+        let v0 = LaneVec3::load(&block.v0);
+        let one = L::splat(1.0);
+        [
+            v0,
+            v0.add_scaled(LaneVec3::load(&block.e1), one),
+            v0.add_scaled(LaneVec3::load(&block.e2), one),
+        ]
+    }
+
     #[inline(always)]
     fn prepare<const W: usize, L: Lane<W>>(&self, _: &Ray, rays: &LaneRay<L>) -> LaneRay<L> {
         *rays

@@ -122,6 +122,14 @@ impl Kernel for Woop {
         }
     }
 
+    const PACKETS: bool = true;
+
+    #[inline(always)]
+    fn corners<L: Lane<8>>(block: &Packed<8>) -> [LaneVec3<L>; 3] {
+        let [a, b, c] = &block.corners;
+        [LaneVec3::load(a), LaneVec3::load(b), LaneVec3::load(c)]
+    }
+
     #[inline(always)]
     fn prepare<const W: usize, L: Lane<W>>(&self, lead: &Ray, rays: &LaneRay<L>) -> Prepared<L> {
         let axes = frame(lead.dir);
@@ -138,8 +146,16 @@ impl Kernel for Woop {
     }
 
     #[inline(always)]
-    fn same_frame(a: &Ray, b: &Ray) -> bool {
-        frame(a.dir) == frame(b.dir)
+    fn same_frame<L: Lane<1>>(lead: &Ray, dirs: &LaneVec3<L>) -> bool {
+        let axes = frame(lead.dir);
+        let [x, y, z] = [dirs.x.abs(), dirs.y.abs(), dirs.z.abs()];
+        // The last of equals is the largest.
+        let differs = match axes[2] {
+            0 => x.le(y) | x.le(z),
+            1 => y.lt(x) | y.le(z),
+            _ => z.lt(x) | z.lt(y),
+        };
+        !differs.any()
     }
 
     #[inline(always)]

@@ -9,7 +9,7 @@
 //! **Source:** the idea of hiding a cache miss behind other lookups is that of O. Kocberber, B. Falsafi and B. Grot,
 //! "Asynchronous Memory Access Chaining", VLDB 2015. **Differs:** a ray is a state that is stepped, there is no queue.
 
-use crate::geometry::lanes::prefetch;
+use crate::geometry::lanes::{Isa, prefetch};
 
 use super::super::Rays;
 use super::stack::{FLIGHTS, Stacks};
@@ -17,17 +17,22 @@ use super::walk::Walk;
 use super::{BvhWide, Child, Node};
 
 /// A ray under way.
-struct Flight<R: Rays> {
+struct Flight<I: Isa, V> {
     index: usize,
     /// Which stack is its own.
     stack: usize,
-    walk: Walk<R::Isa>,
-    visitor: R::Visitor,
+    walk: Walk<I>,
+    visitor: V,
 }
 
-impl<R: Rays> Flight<R> {
+impl<I: Isa, V> Flight<I, V> {
     #[inline(always)]
-    fn new(tree: &BvhWide, batch: &R, index: usize, stack: usize) -> Self {
+    fn new<'a, R: Rays<'a, Isa = I, Visitor = V>>(
+        tree: &BvhWide,
+        batch: &R,
+        index: usize,
+        stack: usize,
+    ) -> Self {
         Self {
             index,
             stack,
@@ -39,8 +44,9 @@ impl<R: Rays> Flight<R> {
 
 /// Traces all rays of `batch`.
 #[inline(always)]
-pub(super) fn trace<R: Rays>(tree: &BvhWide, batch: &mut R, stacks: &mut Stacks) {
+pub(super) fn trace<'a, R: Rays<'a>>(tree: &BvhWide, batch: &mut R, stacks: &mut Stacks) {
     let count = batch.rays().len();
+    let stacks = stacks.first(FLIGHTS);
     let mut waiting = FLIGHTS.min(count)..count;
     let mut flights = Vec::with_capacity(FLIGHTS);
     for index in 0..waiting.start {
@@ -72,7 +78,7 @@ pub(super) fn trace<R: Rays>(tree: &BvhWide, batch: &mut R, stacks: &mut Stacks)
 
 /// Asks for what a visit of `child` reads first.
 #[inline(always)]
-fn fetch<R: Rays>(tree: &BvhWide, batch: &R, child: Child) {
+fn fetch<'a, R: Rays<'a>>(tree: &BvhWide, batch: &R, child: Child) {
     if child.is_leaf() {
         batch.prefetch(child.blocks().start);
     } else {

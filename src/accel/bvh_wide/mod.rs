@@ -17,6 +17,8 @@
 //! and S. Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017, for the collapse.
 //! **Differs:** boxes are tested conservatively, so a watertight kernel stays so.
 
+use std::ops::Range;
+
 use crate::geometry::lanes::Isa;
 use crate::geometry::{Aabb, Ray};
 use crate::scene::Mesh;
@@ -28,12 +30,13 @@ use super::{AcceleratorEntry, Blocks, Rays, Structure, StructureStats, Visitor};
 
 mod collapse;
 mod interleaved;
+mod packets;
 mod stack;
 mod validate;
 mod walk;
 mod way;
 
-use stack::{Stacks, stacks};
+use stack::Stacks;
 use walk::Walk;
 use way::Way;
 
@@ -78,7 +81,7 @@ impl Child {
     }
 
     /// The blocks of a leaf.
-    fn blocks(self) -> std::ops::Range<u32> {
+    fn blocks(self) -> Range<u32> {
         let first = (self.0 & !Self::LEAF) >> 3;
         first..first + (self.0 & Self::MOST)
     }
@@ -165,8 +168,13 @@ impl Node {
 
 /// Traces one ray after another.
 #[inline(always)]
-fn single<R: Rays>(tree: &BvhWide, batch: &mut R, stacks: &mut Box<Stacks>) {
-    for index in 0..batch.rays().len() {
+fn single<'a, R: Rays<'a>>(
+    tree: &BvhWide,
+    batch: &mut R,
+    range: Range<usize>,
+    stacks: &mut Stacks,
+) {
+    for index in range {
         let mut visitor = batch.begin(index);
         let ray = batch.rays()[index];
         tree.traverse::<R::Isa, _>(&ray, stacks, &mut visitor);
@@ -176,23 +184,27 @@ fn single<R: Rays>(tree: &BvhWide, batch: &mut R, stacks: &mut Box<Stacks>) {
 
 impl Structure for BvhWide {
     type Items = Blocks;
-    type Scratch = Box<Stacks>;
+    type Scratch = Stacks;
 
-    fn scratch(&self) -> Box<Stacks> {
-        stacks()
+    fn scratch(&self) -> Stacks {
+        Stacks::default()
     }
 
     #[inline(always)]
-    fn traverse<I: Isa, V: Visitor>(&self, ray: &Ray, stacks: &mut Box<Stacks>, visitor: &mut V) {
+    fn traverse<I: Isa, V: Visitor>(&self, ray: &Ray, stacks: &mut Stacks, visitor: &mut V) {
+        let [stack] = stacks.first(1) else {
+            return;
+        };
         let mut walk = Walk::<I>::new(self, ray);
-        while walk.step(self, &mut stacks[0], visitor) {}
+        while walk.step(self, stack, visitor) {}
     }
 
     #[inline(always)]
-    fn trace<R: Rays>(&self, batch: &mut R, stacks: &mut Box<Stacks>) {
+    fn trace<'a, R: Rays<'a>>(&self, batch: &mut R, stacks: &mut Stacks) {
         match self.way.unwrap_or_else(|| way::choose(self, batch.rays())) {
-            Way::Single => single(self, batch, stacks),
+            Way::Single => single(self, batch, 0..batch.rays().len(), stacks),
             Way::Interleaved => interleaved::trace(self, batch, stacks),
+            Way::Packets => packets::trace(self, batch, stacks),
         }
     }
 
@@ -226,48 +238,4 @@ impl Structure for BvhWide {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::testbed::{assert_agrees, built, mesh, nasty, ray_count, rays, soup, sphere};
-    use proptest::prelude::*;
-
-    #[test]
-    fn nasty_meshes_are_answered_as_by_brute_force() {
-        for (name, mesh) in nasty() {
-            assert_agrees(name, &mesh, "bvh-wide", &rays(&mesh, ray_count(&mesh), 7));
-        }
-    }
-
-    #[test]
-    fn leaves_are_filled_well_and_nodes_are_wide() {
-        let mesh = mesh(&sphere(64));
-        let stats = built(&mesh, "bvh-wide", "woop").stats();
-        assert_eq!(stats.references, mesh.len() as u64);
-        // 8,192 triangles: a leaf holds from one block on, and a node has nearly eight children.
-        assert!(stats.cells < 2200, "{stats:?}");
-        assert!(stats.depth <= 6, "{stats:?}");
-    }
-
-    #[test]
-    fn a_place_is_known_by_its_box() {
-        let mesh = mesh(&sphere(16));
-        let accel = built(&mesh, "bvh-wide", "woop");
-        for ray in rays(&mesh, 50, 3) {
-            for visit in accel.inspect(&ray).visits {
-                assert!(visit.bounds.is_some(), "{visit:?}");
-            }
-        }
-    }
-
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(48))]
-        #[test]
-        fn any_soup_is_answered_as_by_brute_force(
-            count in 0_u32..120,
-            size in prop_oneof![Just(0.0_f32), 1e-4_f32..2.0],
-            seed in any::<u64>(),
-        ) {
-            let mesh = mesh(&soup(count, size, seed));
-            assert_agrees("soup", &mesh, "bvh-wide", &rays(&mesh, 200, seed ^ 1));
-        }
-    }
-}
+mod tests;

@@ -20,16 +20,22 @@ const ENTRY_BITS: u32 = !7;
 /// Rays that are interleaved.
 pub(super) const FLIGHTS: usize = 16;
 
-/// A stack for each ray that is under way: what a thread needs to traverse a wide tree.
-pub type Stacks = [Stack; FLIGHTS];
+/// Stacks for the rays that are under way: what a thread needs to traverse a wide tree.
+#[derive(Default)]
+pub struct Stacks(Vec<Stack>);
 
-/// Empty stacks.
-pub(super) fn stacks() -> Box<Stacks> {
-    let empty = || Stack {
-        children: [Child::NONE.0; ROOM],
-        keys: [0.0; ROOM],
-    };
-    Box::new(std::array::from_fn(|_| empty()))
+impl Stacks {
+    /// The first `count` stacks, made where there are fewer.
+    #[inline(always)]
+    pub(super) fn first(&mut self, count: usize) -> &mut [Stack] {
+        while self.0.len() < count {
+            self.0.push(Stack {
+                children: [Child::NONE.0; ROOM],
+                keys: [0.0; ROOM],
+            });
+        }
+        &mut self.0[..count]
+    }
 }
 
 impl Stack {

@@ -1,16 +1,19 @@
 //! The way of one ray through a wide tree, place by place, so that several rays can take turns.
 
+use std::marker::PhantomData;
+
 use crate::geometry::Ray;
 use crate::geometry::lanes::{Isa, Lane, LaneMask};
 
 use super::super::Visitor;
-use super::super::slab::WideSlabRay;
+use super::super::slab::{Clip, WideSlabRay};
 use super::stack::Stack;
 use super::{BvhWide, Child};
 
-/// Where a ray is.
-pub(super) struct Walk<I: Isa> {
-    slabs: WideSlabRay<I::X8>,
+/// Where a ray, or a packet of them, is.
+pub(super) struct Walk<I: Isa, C = WideSlabRay<<I as Isa>::X8>> {
+    slabs: C,
+    lanes: PhantomData<I>,
     /// What is visited next.
     pub next: Child,
     /// Its entry, or a bound below it.
@@ -20,13 +23,22 @@ pub(super) struct Walk<I: Isa> {
 }
 
 impl<I: Isa> Walk<I> {
-    /// Before the root.
+    /// Of a ray, before the root.
     #[inline(always)]
     pub fn new(tree: &BvhWide, ray: &Ray) -> Self {
+        Self::along(WideSlabRay::new(ray, &tree.bounds), tree, ray.t_min)
+    }
+}
+
+impl<I: Isa, C: Clip<I::X8>> Walk<I, C> {
+    /// Of whatever `slabs` stand for, before the root.
+    #[inline(always)]
+    pub fn along(slabs: C, tree: &BvhWide, entry: f32) -> Self {
         Self {
-            slabs: WideSlabRay::new(ray, &tree.bounds),
+            slabs,
+            lanes: PhantomData,
             next: tree.root,
-            entry: ray.t_min,
+            entry,
             waiting: 0,
         }
     }

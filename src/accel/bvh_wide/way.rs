@@ -10,6 +10,8 @@ use super::{BvhWide, Node};
 pub(super) enum Way {
     /// One ray after another.
     Single,
+    /// Rays from one origin go together.
+    Packets,
     /// Several rays take turns, each while the memory fetches for the others.
     Interleaved,
 }
@@ -19,7 +21,7 @@ impl Way {
     pub const PARAM: ParamSpec = ParamSpec {
         name: "way",
         about: "How a batch of rays is traced; `auto` looks at the rays and the tree.",
-        kind: ParamKind::Choice(&["auto", "single", "interleaved"]),
+        kind: ParamKind::Choice(&["auto", "single", "interleaved", "packets"]),
         default: "auto",
     };
 
@@ -27,6 +29,7 @@ impl Way {
     pub fn of(params: &Params) -> Option<Self> {
         match params.text("way") {
             "single" => Some(Self::Single),
+            "packets" => Some(Self::Packets),
             "interleaved" => Some(Self::Interleaved),
             _ => None,
         }
@@ -42,6 +45,9 @@ const COHERENT: f32 = 0.9;
 
 /// Chooses the way for `rays`.
 pub(super) fn choose(tree: &BvhWide, rays: &[Ray]) -> Way {
+    if share_origin(rays) {
+        return Way::Packets;
+    }
     // A block is as large as a node and a quarter.
     let bytes = (tree.nodes.len() + tree.filled.len() * 5 / 4) * size_of::<Node>();
     if bytes > NEAR_CACHES && !are_coherent(rays) {
@@ -61,4 +67,10 @@ fn are_coherent(rays: &[Ray]) -> bool {
         dot > 0.0 && dot * dot > COHERENT * COHERENT * a.length_squared() * b.length_squared()
     };
     pairs.clone().filter(close).count() * 2 > pairs.count()
+}
+
+/// Whether the rays of a sample start at one point.
+fn share_origin(rays: &[Ray]) -> bool {
+    let mut sample = rays.iter().step_by(16);
+    rays.len() > 1 && sample.all(|ray| ray.origin == rays[0].origin)
 }

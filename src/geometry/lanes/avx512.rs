@@ -17,8 +17,8 @@ use std::arch::x86_64::{
     _mm256_permutevar8x32_epi32, _mm256_set1_epi32, _mm256_set1_ps, _mm256_setr_epi32,
     _mm256_sqrt_ps, _mm256_storeu_ps, _mm256_storeu_si256, _mm256_sub_ps, _mm256_xor_ps,
     _mm512_add_ps, _mm512_andnot_ps, _mm512_cmp_ps_mask, _mm512_div_ps, _mm512_loadu_ps,
-    _mm512_mask_blend_ps, _mm512_max_ps, _mm512_min_ps, _mm512_mul_ps, _mm512_set1_ps,
-    _mm512_sqrt_ps, _mm512_storeu_ps, _mm512_sub_ps, _mm512_xor_ps,
+    _mm512_mask_blend_ps, _mm512_max_ps, _mm512_min_ps, _mm512_mul_ps, _mm512_reduce_min_ps,
+    _mm512_set1_ps, _mm512_sqrt_ps, _mm512_storeu_ps, _mm512_sub_ps, _mm512_xor_ps,
 };
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -30,6 +30,7 @@ macro_rules! lanes {
         $numbers:ident($register:ty), $mask:ident($bits:ty), $n:literal, triangles $w:literal,
         load $load:expr, $set1:ident $loadu:ident $storeu:ident $add:ident $sub:ident $mul:ident $div:ident
         $max:ident $min:ident $xor:ident $andnot:ident $sqrt:ident $blend:ident $cmp:ident
+        $(, $least:item)?
     ) => {
         #[doc = concat!(stringify!($n), " `f32`.")]
         #[derive(Debug, Clone, Copy)]
@@ -121,6 +122,7 @@ macro_rules! lanes {
                 // SAFETY: as above.
                 Self(unsafe { $min(self.0, other.0) })
             }
+            $($least)?
             #[inline(always)]
             fn abs(self) -> Self {
                 // SAFETY: as above.
@@ -177,7 +179,12 @@ lanes!(
     F32x16(__m512), Mask16(u16), 16, triangles 1,
     load |xs: &[f32; 1]| F32x16::splat(xs[0]),
     _mm512_set1_ps _mm512_loadu_ps _mm512_storeu_ps _mm512_add_ps _mm512_sub_ps _mm512_mul_ps _mm512_div_ps
-    _mm512_max_ps _mm512_min_ps _mm512_xor_ps _mm512_andnot_ps _mm512_sqrt_ps _mm512_mask_blend_ps _mm512_cmp_ps_mask
+    _mm512_max_ps _mm512_min_ps _mm512_xor_ps _mm512_andnot_ps _mm512_sqrt_ps _mm512_mask_blend_ps _mm512_cmp_ps_mask,
+    #[inline(always)]
+    fn least(self) -> f32 {
+        // SAFETY: as above.
+        unsafe { _mm512_reduce_min_ps(self.0) }
+    }
 );
 
 /// See [`super::Isa::greatest_first`]: the keys are compressed to the front and sorted by a network, of four where four

@@ -71,6 +71,11 @@ fn check<const W: usize, L: Lane<W>>(xs: &[f32; 16], ys: &[f32; 16]) {
         assert!(same(chosen.get(i), if x < y { x } else { y }));
         assert!(same(L::splat(x).get(i), x));
     }
+    if xs[..L::N].iter().all(|x| !x.is_nan()) {
+        let least = xs[..L::N].iter().copied().fold(f32::INFINITY, f32::min);
+        let greatest = xs[..L::N].iter().copied().fold(f32::NEG_INFINITY, f32::max);
+        assert_eq!((a.least(), a.greatest()), (least, greatest));
+    }
     let all = (1_u32 << L::N) - 1;
     assert_eq!(a.lt(b).any(), (0..L::N).any(|i| xs[i] < ys[i]));
     assert_eq!((a.lt(b) & b.lt(a)).bits() & all, 0);

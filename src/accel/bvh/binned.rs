@@ -1,347 +1,332 @@
-//! The binned build: top down, each node split where a histogram of centroids says that it is cheapest.
+//! The binned build: top down, each node split where a histogram of centroids says that it is cheapest, down to single
+//! references.
 //!
-//! Every decision depends only on the references of the node, and ranges of references and nodes are handed out by
+//! ```text
+//!   references of a node          spare room of the same size
+//!   | . . . . . . . . . . |  -->  | first side . . > < . second side |     then the two change roles
+//! ```
+//!
+//! A split moves the references to the other of two arrays, the first side from its begin, the second from its end,
+//! without a branch that could be mispredicted. A subtree of k references has 2k - 2 nodes below its root, so each has
+//! its room among the nodes before it is built.
+//!
+//! Every decision depends only on the references of the node, and chunks that threads share are cut and joined by
 //! counts, so the tree is the same whatever the number of threads.
 
+use glam::{BVec4A, Vec4};
 use rayon::prelude::*;
 
-use crate::geometry::{Aabb, Vec3, axis};
 use crate::scene::Mesh;
 
-use super::super::sah::{Costs, half_area};
 use super::super::stack::MAX_DEPTH;
-use super::Node;
-
-/// Bins an axis. More than 16 gains less than 1 % of SAH cost (Wald 2007, figure 5).
-const BINS: usize = 16;
-
-/// A step tests two boxes, which takes about as long as one triangle.
-const COSTS: Costs = Costs {
-    step: 1.0,
-    test: 1.0,
-};
+use super::bins::{Grid, Histogram, Split};
+use super::reference::{Bounds, Extent, Reference};
+use super::{BinaryTree, Node, small};
 
 /// Below this many references a node is built by one thread.
 const PARALLEL: usize = 4096;
 
-/// A triangle's box and index.
-#[derive(Debug, Clone, Copy)]
-struct Item {
-    bounds: Aabb,
-    prim: u32,
-}
+/// Above this many references, threads share the work on a single node, in chunks of [`CHUNK`].
+const SHARED: usize = 4 * CHUNK;
 
-impl Item {
-    #[inline(always)]
-    fn centroid(&self) -> Vec3 {
-        self.bounds.centre()
-    }
-}
+/// References of a chunk: large beside a histogram, small beside a mesh.
+const CHUNK: usize = 16_384;
 
-/// Nodes (root first) and references in leaf order; both empty for an empty mesh.
-pub(super) fn build(mesh: &Mesh, most: usize) -> (Vec<Node>, Vec<u32>) {
-    if mesh.is_empty() {
-        return (Vec::new(), Vec::new());
-    }
-    let mut items: Vec<Item> = (0..mesh.len() as u32)
+/// The references of all triangles of `mesh`.
+pub(super) fn references(mesh: &Mesh) -> Vec<Reference> {
+    (0..mesh.len() as u32)
         .into_par_iter()
-        .map(|prim| Item {
-            bounds: mesh.triangle_bounds(prim),
-            prim,
-        })
-        .collect();
-    // A subtree of k references has at most 2k - 2 nodes below its root: each gets that room, holes are closed later.
-    let mut nodes = vec![Node::leaf(mesh.bounds(), 0, 0); 2 * items.len() - 1];
-    let (root, room) = nodes.split_at_mut(1);
-    let task = Task {
-        items: &mut items,
-        first_item: 0,
-        room,
+        .map(|prim| Reference::new(mesh.triangle_bounds(prim), prim))
+        .collect()
+}
+
+/// A tree over `references` whose leaves hold one each.
+pub(super) fn build(mut references: Vec<Reference>) -> BinaryTree {
+    if references.is_empty() {
+        return BinaryTree::EMPTY;
+    }
+    let count = references.len();
+    let room = |count| (0..count).into_par_iter();
+    let mut spare: Vec<Reference> = room(count).map(|_| Reference::NONE).collect();
+    let mut nodes: Vec<Node> = room(2 * count - 1).map(|_| Node::NONE).collect();
+    let mut prims: Vec<u32> = vec![0; count];
+    let extent = extent(&references);
+    let (root, below) = nodes.split_at_mut(1);
+    let place = Place {
+        prims: &mut prims,
+        first_reference: 0,
+        nodes: below,
         first_node: 1,
         depth: 0,
     };
-    split(&mut root[0], task, most);
-    (
-        close_holes(&nodes),
-        items.iter().map(|item| item.prim).collect(),
-    )
+    let task = Task {
+        references: &mut references,
+        spare: &mut spare,
+        extent,
+    };
+    split(&mut root[0], task, place);
+    BinaryTree {
+        nodes,
+        references: prims,
+    }
 }
 
-/// The references of a node and the room for what comes below it.
+/// The references of a node, and as much room.
 struct Task<'a> {
-    items: &'a mut [Item],
-    first_item: u32,
-    room: &'a mut [Node],
-    first_node: u32,
-    depth: usize,
+    references: &'a mut [Reference],
+    spare: &'a mut [Reference],
+    extent: Extent,
+}
+
+/// Where a subtree goes.
+pub(super) struct Place<'a> {
+    /// Triangle indices of its leaves.
+    pub prims: &'a mut [u32],
+    pub first_reference: u32,
+    /// The nodes below its root.
+    pub nodes: &'a mut [Node],
+    pub first_node: u32,
+    pub depth: usize,
+}
+
+impl<'a> Place<'a> {
+    /// The children of a node that gives `count` references to the first of them, and the places of both subtrees.
+    pub fn split(self, count: usize) -> (&'a mut [Node], [Place<'a>; 2]) {
+        let (children, below) = self.nodes.split_at_mut(2);
+        let (a_nodes, b_nodes) = below.split_at_mut(2 * count - 2);
+        let (a_prims, b_prims) = self.prims.split_at_mut(count);
+        let depth = self.depth + 1;
+        let first_node = self.first_node + 2;
+        let a = Place {
+            prims: a_prims,
+            first_reference: self.first_reference,
+            nodes: a_nodes,
+            first_node,
+            depth,
+        };
+        let b = Place {
+            prims: b_prims,
+            first_reference: self.first_reference + count as u32,
+            nodes: b_nodes,
+            first_node: first_node + 2 * count as u32 - 2,
+            depth,
+        };
+        (children, [a, b])
+    }
+
+    /// Whether a subtree of `count` references may be split at will: what is left must fit below even if it is halved
+    /// by index from the next level on.
+    pub fn may_choose(&self, count: usize) -> bool {
+        let levels = count.next_power_of_two().trailing_zeros() as usize;
+        self.depth + levels < MAX_DEPTH
+    }
 }
 
 /// Fills `node` and everything below it.
-fn split(node: &mut Node, task: Task, most: usize) {
-    let Task {
-        items,
-        first_item,
-        room,
-        first_node,
-        depth,
-    } = task;
-    let extent = Extent::of(items);
-    let Some(middle) = partition(items, &extent, depth, most) else {
-        *node = Node::leaf(extent.bounds, first_item, items.len() as u32);
+fn split(node: &mut Node, task: Task, place: Place) {
+    let count = task.references.len();
+    if count <= small::MOST {
+        small::build(node, task.references, &task.extent, place);
         return;
-    };
-    *node = Node::interior(extent.bounds, first_node);
-    let (pair, below) = room.split_at_mut(2);
-    let (a, b) = pair.split_at_mut(1);
-    let (a_room, b_room) = below.split_at_mut(2 * middle - 2);
-    let parallel = items.len() >= PARALLEL;
-    let (a_items, b_items) = items.split_at_mut(middle);
-    let a_task = Task {
-        items: a_items,
-        first_item,
-        first_node: first_node + 2,
-        room: a_room,
-        depth: depth + 1,
-    };
-    let b_task = Task {
-        items: b_items,
-        first_item: first_item + middle as u32,
-        first_node: first_node + 2 * middle as u32,
-        room: b_room,
-        depth: depth + 1,
-    };
-    if parallel {
-        rayon::join(
-            || split(&mut a[0], a_task, most),
-            || split(&mut b[0], b_task, most),
-        );
+    }
+    *node = Node::interior(task.extent.bounds.aabb(), place.first_node);
+    let [a_task, b_task] = task.divided(place.may_choose(count));
+    let (children, [a_place, b_place]) = place.split(a_task.references.len());
+    let (a, b) = children.split_at_mut(1);
+    let first = || split(&mut a[0], a_task, a_place);
+    let second = || split(&mut b[0], b_task, b_place);
+    if count >= PARALLEL {
+        rayon::join(first, second);
     } else {
-        split(&mut a[0], a_task, most);
-        split(&mut b[0], b_task, most);
+        first();
+        second();
     }
 }
 
-/// The boxes of a node's triangles and of their centroids.
-#[derive(Clone, Copy)]
-struct Extent {
-    bounds: Aabb,
-    centroids: Aabb,
-}
-
-impl Extent {
-    const EMPTY: Self = Self {
-        bounds: Aabb::EMPTY,
-        centroids: Aabb::EMPTY,
-    };
-
-    fn union(self, other: Self) -> Self {
-        Self {
-            bounds: self.bounds.union(other.bounds),
-            centroids: self.centroids.union(other.centroids),
-        }
-    }
-
-    fn of(items: &[Item]) -> Self {
-        let serial = |items: &[Item]| {
-            items.iter().fold(Self::EMPTY, |e, item| Self {
-                bounds: e.bounds.union(item.bounds),
-                centroids: e.centroids.grown(item.centroid()),
-            })
-        };
-        // Unions do not depend on their order, so chunks may be joined in any.
-        if items.len() < PARALLEL {
-            serial(items)
-        } else {
-            items
-                .par_chunks(PARALLEL)
-                .map(serial)
-                .reduce(|| Self::EMPTY, Self::union)
-        }
-    }
-}
-
-/// Orders `items` into two sides and returns how many are on the first; `None` where a leaf is better.
-fn partition(items: &mut [Item], extent: &Extent, depth: usize, most: usize) -> Option<usize> {
-    let count = items.len();
-    if count == 1 {
-        return None;
-    }
-    // What is left must fit below even if it is halved by index from here on.
-    let levels = count.next_power_of_two().trailing_zeros() as usize;
-    let may_choose = depth + levels < MAX_DEPTH;
-    let best = if may_choose {
-        Histogram::of(items, extent).best(half_area(&extent.bounds))
-    } else {
-        None
-    };
-    let Some(best) = best else {
-        // Identical centroids, or too deep: halves by index keep the depth bounded.
-        return (count > most).then_some(count / 2);
-    };
-    if count <= most && COSTS.test * count as f64 <= best.cost {
-        return None;
-    }
-    let bins = Bins::new(&extent.centroids, best.axis);
-    let mut middle = 0;
-    for i in 0..count {
-        if bins.of(&items[i]) < best.bin {
-            items.swap(middle, i);
-            middle += 1;
-        }
-    }
-    Some(middle)
-}
-
-/// The bins along one axis.
-#[derive(Clone, Copy)]
-struct Bins {
-    axis: usize,
-    start: f32,
-    scale: f32,
-}
-
-impl Bins {
-    fn new(centroids: &Aabb, at: usize) -> Self {
-        let (start, end) = (axis(centroids.min, at), axis(centroids.max, at));
-        // Halved so that the width of the widest box does not overflow. A width of zero gives NaN or infinite bins,
-        // which all fall on bin 0 or the last: a side stays empty and the axis is not chosen.
-        let scale = BINS as f32 * 0.5 / (end * 0.5 - start * 0.5);
-        Self {
-            axis: at,
-            start,
-            scale,
-        }
-    }
-
-    /// The bin of an item: monotone in its centroid.
-    #[inline(always)]
-    fn of(&self, item: &Item) -> usize {
-        let along = axis(item.centroid(), self.axis) - self.start;
-        // The conversion saturates, and turns NaN into 0.
-        ((along * self.scale) as usize).min(BINS - 1)
-    }
-}
-
-/// How many items of what extent fall into each bin of each axis.
-#[derive(Clone)]
-struct Histogram {
-    bins: [[Bin; BINS]; 3],
-}
-
-#[derive(Clone, Copy)]
-struct Bin {
-    bounds: Aabb,
-    count: usize,
-}
-
-impl Bin {
-    const EMPTY: Self = Self {
-        bounds: Aabb::EMPTY,
-        count: 0,
-    };
-
-    fn union(self, other: Self) -> Self {
-        Self {
-            bounds: self.bounds.union(other.bounds),
-            count: self.count + other.count,
-        }
-    }
-}
-
-/// Items of bins below `bin` go to the first side. `cost` is relative to one visit of the node.
-struct Best {
-    axis: usize,
-    bin: usize,
-    cost: f64,
-}
-
-impl Histogram {
-    const EMPTY: Self = Self {
-        bins: [[Bin::EMPTY; BINS]; 3],
-    };
-
-    fn of(items: &[Item], extent: &Extent) -> Self {
-        let axes = [0, 1, 2].map(|at| Bins::new(&extent.centroids, at));
-        let serial = |items: &[Item]| {
-            let mut histogram = Self::EMPTY;
-            for item in items {
-                for (bins, of) in histogram.bins.iter_mut().zip(&axes) {
-                    let bin = &mut bins[of.of(item)];
-                    bin.bounds = bin.bounds.union(item.bounds);
-                    bin.count += 1;
-                }
-            }
-            histogram
-        };
-        if items.len() < PARALLEL {
-            serial(items)
-        } else {
-            items
-                .par_chunks(PARALLEL)
-                .map(serial)
-                .reduce(|| Self::EMPTY, |a, b| a.union(&b))
-        }
-    }
-
-    fn union(mut self, other: &Self) -> Self {
-        for (mine, theirs) in self
-            .bins
-            .iter_mut()
-            .flatten()
-            .zip(other.bins.iter().flatten())
+impl<'a> Task<'a> {
+    /// Both sides: of the best split where `may_choose`, else halves by index, which keep the depth bounded.
+    fn divided(self, may_choose: bool) -> [Self; 2] {
+        let Self {
+            references,
+            spare,
+            extent: whole,
+        } = self;
+        if let Some((grid, split, parts)) = may_choose.then(|| choose(references, &whole)).flatten()
         {
-            *mine = mine.union(*theirs);
+            let centroids = if parts.is_empty() {
+                partition(references, spare, &grid, &split)
+            } else {
+                partition_shared(references, spare, &grid, &split, &parts)
+            };
+            let extents = [0, 1].map(|side| Extent {
+                bounds: split.sides[side],
+                centroids: centroids[side],
+            });
+            return Self::pair(spare, references, split.count, extents);
         }
-        self
+        let middle = references.len() / 2;
+        let (a, b) = references.split_at(middle);
+        let extents = [extent(a), extent(b)];
+        Self::pair(references, spare, middle, extents)
     }
 
-    /// The cheapest split with something on both sides; `None` where no bins separate the items.
-    fn best(&self, area: f64) -> Option<Best> {
-        let mut best: Option<Best> = None;
-        for (axis, bins) in self.bins.iter().enumerate() {
-            // Costs of the second side, swept from the right; then of the first, from the left.
-            let mut second = [(0.0, 0); BINS];
-            let mut side = Bin::EMPTY;
-            for bin in (1..BINS).rev() {
-                side = side.union(bins[bin]);
-                second[bin] = (half_area(&side.bounds) * side.count as f64, side.count);
-            }
-            let mut side = Bin::EMPTY;
-            for bin in 1..BINS {
-                side = side.union(bins[bin - 1]);
-                let (second_cost, second_count) = second[bin];
-                if side.count == 0 || second_count == 0 {
-                    continue;
-                }
-                let tests = half_area(&side.bounds) * side.count as f64 + second_cost;
-                // A box without area is met only by rays in its plane: all splits of it cost the same.
-                let share = if area > 0.0 { tests / area } else { 0.0 };
-                let cost = COSTS.step + COSTS.test * share;
-                if best.as_ref().is_none_or(|b| cost < b.cost) {
-                    best = Some(Best { axis, bin, cost });
-                }
-            }
-        }
-        best
+    /// The first `middle` references and the others.
+    fn pair(
+        references: &'a mut [Reference],
+        spare: &'a mut [Reference],
+        middle: usize,
+        extents: [Extent; 2],
+    ) -> [Self; 2] {
+        let (a, b) = references.split_at_mut(middle);
+        let (a_spare, b_spare) = spare.split_at_mut(middle);
+        let [a_extent, b_extent] = extents;
+        [(a, a_spare, a_extent), (b, b_spare, b_extent)].map(|(references, spare, extent)| Self {
+            references,
+            spare,
+            extent,
+        })
     }
 }
 
-/// The same tree without the unused nodes, children of a node side by side, first children first.
-fn close_holes(nodes: &[Node]) -> Vec<Node> {
-    let mut closed = vec![nodes[0]];
-    // Nodes of `closed` whose children are still in `nodes`.
-    let mut open = vec![0];
-    while let Some(parent) = open.pop() {
-        let node: Node = closed[parent];
-        if node.is_leaf() {
-            continue;
-        }
-        let first = closed.len();
-        closed.extend_from_slice(&nodes[node.first as usize..][..2]);
-        closed[parent].first = first as u32;
-        open.push(first + 1);
-        open.push(first);
+/// The boxes of `references` and of their centroids.
+fn extent(references: &[Reference]) -> Extent {
+    let serial = |chunk: &[Reference]| chunk.iter().fold(Extent::EMPTY, Extent::grown);
+    if references.len() < SHARED {
+        return serial(references);
     }
-    closed.shrink_to_fit();
-    closed
+    // Unions do not depend on their order, so chunks may be joined in any.
+    references
+        .par_chunks(CHUNK)
+        .map(serial)
+        .reduce(|| Extent::EMPTY, Extent::union)
+}
+
+/// The best split of a node, and the histograms of its chunks where threads share it.
+fn choose(references: &[Reference], extent: &Extent) -> Option<(Grid, Split, Vec<Histogram>)> {
+    let grid = Grid::new(&extent.centroids, references.len());
+    let mut parts = Vec::new();
+    let histogram = if references.len() < SHARED {
+        Histogram::of(references, &grid)
+    } else {
+        references
+            .par_chunks(CHUNK)
+            .map(|chunk| Histogram::of(chunk, &grid))
+            .collect_into_vec(&mut parts);
+        let mut joined = Histogram::EMPTY;
+        for part in &parts {
+            joined.join(part);
+        }
+        joined
+    };
+    let split = histogram.best(&grid, &extent.bounds)?;
+    Some((grid, split, parts))
+}
+
+/// Moves `references` to `to`, those of the first side from its begin, the others from its end, and returns the boxes
+/// of the centroids of both sides.
+fn partition(
+    references: &[Reference],
+    to: &mut [Reference],
+    grid: &Grid,
+    split: &Split,
+) -> [Bounds; 2] {
+    match split.axis {
+        0 => partition_along::<0>(references, to, grid, split.bin),
+        1 => partition_along::<1>(references, to, grid, split.bin),
+        _ => partition_along::<2>(references, to, grid, split.bin),
+    }
+}
+
+fn partition_along<const AXIS: usize>(
+    references: &[Reference],
+    to: &mut [Reference],
+    grid: &Grid,
+    bin: usize,
+) -> [Bounds; 2] {
+    let (mut first, mut second) = (0, to.len());
+    let mut centroids = Centroids::EMPTY;
+    for reference in references {
+        let centroid = reference.centroid();
+        let beyond = grid.is_beyond::<AXIS>(centroid, bin);
+        centroids.add(centroid, beyond);
+        let is_beyond = beyond.bitmask() as usize & 1;
+        second -= is_beyond;
+        to[first + (second - first) * is_beyond] = *reference;
+        first += is_beyond ^ 1;
+    }
+    centroids.0
+}
+
+/// The boxes of the centroids on both sides of a split.
+#[derive(Clone, Copy)]
+struct Centroids([Bounds; 2]);
+
+impl Centroids {
+    const EMPTY: Self = Self([Bounds::EMPTY; 2]);
+
+    /// Adds to one side without a branch: for the other side the centroid lies at infinity.
+    #[inline(always)]
+    fn add(&mut self, centroid: Vec4, beyond: BVec4A) {
+        let [first, second] = &mut self.0;
+        let a = Vec4::select(beyond, Vec4::INFINITY, Vec4::ZERO);
+        let b = Vec4::select(beyond, Vec4::ZERO, Vec4::INFINITY);
+        first.min = first.min.min(centroid + a);
+        first.max = first.max.max(centroid - a);
+        second.min = second.min.min(centroid + b);
+        second.max = second.max.max(centroid - b);
+    }
+
+    fn union(self, other: Self) -> Self {
+        let [a, b] = self.0;
+        let [c, d] = other.0;
+        Self([a.union(c), b.union(d)])
+    }
+}
+
+/// As [`partition`], chunk by chunk; `parts` are their histograms, which say where each chunk's references go.
+fn partition_shared(
+    references: &[Reference],
+    to: &mut [Reference],
+    grid: &Grid,
+    split: &Split,
+    parts: &[Histogram],
+) -> [Bounds; 2] {
+    let (mut first, mut second) = to.split_at_mut(split.count);
+    let mut chunks = Vec::with_capacity(parts.len());
+    for (chunk, part) in references.chunks(CHUNK).zip(parts) {
+        let below = part.below(split.axis, split.bin);
+        let (a, a_rest) = std::mem::take(&mut first).split_at_mut(below);
+        let (b, b_rest) = std::mem::take(&mut second).split_at_mut(chunk.len() - below);
+        (first, second) = (a_rest, b_rest);
+        chunks.push((chunk, [a, b]));
+    }
+    let joined = chunks
+        .into_par_iter()
+        .map(|(chunk, mut sides)| match split.axis {
+            0 => deal::<0>(chunk, &mut sides, grid, split.bin),
+            1 => deal::<1>(chunk, &mut sides, grid, split.bin),
+            _ => deal::<2>(chunk, &mut sides, grid, split.bin),
+        })
+        .reduce(|| Centroids::EMPTY, Centroids::union);
+    joined.0
+}
+
+/// Moves a chunk to its room on both sides.
+fn deal<const AXIS: usize>(
+    chunk: &[Reference],
+    sides: &mut [&mut [Reference]; 2],
+    grid: &Grid,
+    bin: usize,
+) -> Centroids {
+    let mut centroids = Centroids::EMPTY;
+    let mut filled = [0; 2];
+    for reference in chunk {
+        let centroid = reference.centroid();
+        let beyond = grid.is_beyond::<AXIS>(centroid, bin);
+        centroids.add(centroid, beyond);
+        let side = beyond.bitmask() as usize & 1;
+        sides[side][filled[side]] = *reference;
+        filled[side] += 1;
+    }
+    centroids
 }

@@ -24,6 +24,10 @@ use super::stack::{Room, Stack, room};
 use super::{AcceleratorEntry, Singles, Structure, StructureStats, Visitor, finish};
 
 mod binned;
+mod bins;
+mod leaves;
+mod reference;
+mod small;
 mod tree;
 mod validate;
 
@@ -66,7 +70,7 @@ impl Bvh {
     }
 
     fn references_of(&self, leaf: &Node) -> &[u32] {
-        &self.tree.references[leaf.first as usize..][..leaf.count as usize]
+        self.tree.references_of(leaf)
     }
 }
 
@@ -192,7 +196,7 @@ mod tests {
 
     #[test]
     fn one_thread_and_many_build_the_same_tree() {
-        let mesh = mesh(&soup(20_000, 0.05, 10));
+        let mesh = mesh(&soup(70_000, 0.05, 10));
         let build = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
             pool.build()
@@ -211,6 +215,20 @@ mod tests {
         let stats = Bvh::build(&twins, &defaults()).stats();
         assert_eq!(stats.depth, 12);
         assert!(stats.longest_list <= 4);
+    }
+
+    #[test]
+    fn merging_leaves_lowers_the_cost_and_keeps_to_the_greatest_size() {
+        let mesh = mesh(&soup(5000, 0.1, 12));
+        let trees = [1, 4, 64].map(|most| binary(&mesh, Build::Binned, most));
+        assert!(trees[0].nodes.iter().all(|n| n.count <= 1));
+        assert!(trees[1].nodes.iter().all(|n| n.count <= 4));
+        assert!(trees[1].nodes.iter().any(|n| n.count == 4));
+        let [single, four, many] = trees.map(|tree| tree.cost());
+        assert!(
+            many <= four && four < 0.9 * single,
+            "{single} {four} {many}"
+        );
     }
 
     #[test]

@@ -5,7 +5,7 @@ use crate::registry::{ParamKind, ParamSpec, Params};
 use crate::scene::Mesh;
 
 use super::super::slab::{Corners, corners};
-use super::binned;
+use super::{binned, leaves};
 
 /// A box and what is in it: two children at `first` and `first + 1`, or `count` references from `first` on.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,6 +20,13 @@ pub(in crate::accel) struct Node {
 }
 
 impl Node {
+    /// Neither a leaf nor interior.
+    pub const NONE: Self = Self {
+        corners: [[0.0; 3]; 2],
+        first: 0,
+        count: 0,
+    };
+
     pub fn leaf(bounds: Aabb, first: u32, count: u32) -> Self {
         Self {
             corners: corners(bounds),
@@ -57,6 +64,39 @@ pub(in crate::accel) struct BinaryTree {
     pub references: Vec<u32>,
 }
 
+impl BinaryTree {
+    /// The tree over nothing.
+    pub const EMPTY: Self = Self {
+        nodes: Vec::new(),
+        references: Vec::new(),
+    };
+
+    /// The triangles that `leaf` lists.
+    #[inline(always)]
+    pub fn references_of(&self, leaf: &Node) -> &[u32] {
+        &self.references[leaf.first as usize..][..leaf.count as usize]
+    }
+
+    /// What a random line that meets the root costs by the surface area heuristic; 0 where the root has no area.
+    #[cfg(test)]
+    pub fn cost(&self) -> f64 {
+        use super::super::sah::half_area;
+        let Some(root) = self.nodes.first().map(|root| half_area(&root.bounds())) else {
+            return 0.0;
+        };
+        let cost = |node: &Node| {
+            let work = if node.is_leaf() {
+                leaves::COSTS.test * f64::from(node.count)
+            } else {
+                leaves::COSTS.step
+            };
+            work * half_area(&node.bounds())
+        };
+        let cost: f64 = self.nodes.iter().map(cost).sum();
+        if root > 0.0 { cost / root } else { 0.0 }
+    }
+}
+
 /// How a binary tree is built.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::accel) enum Build {
@@ -84,8 +124,12 @@ impl Build {
 /// Runs in parallel in the rayon pool it is called in and gives the same tree whatever its threads. In time
 /// O(N log N).
 pub(in crate::accel) fn binary(mesh: &Mesh, build: Build, most: usize) -> BinaryTree {
-    let (nodes, references) = match build {
-        Build::Binned => binned::build(mesh, most.max(1)),
+    let tree = match build {
+        Build::Binned => binned::build(binned::references(mesh)),
     };
-    BinaryTree { nodes, references }
+    if most > 1 {
+        leaves::merged(&tree, most)
+    } else {
+        tree
+    }
 }

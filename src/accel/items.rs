@@ -48,6 +48,9 @@ pub trait Items: Sized + Send + Sync + 'static {
         item: u32,
     );
 
+    /// `set` where these items use lanes, else none.
+    fn instruction_set(set: InstructionSet) -> InstructionSet;
+
     /// Runs `task` with the lanes of `set` where these items use lanes, else without any.
     fn run<T: Task>(set: InstructionSet, task: T) -> T::Out;
 }
@@ -115,6 +118,10 @@ impl Items for Singles {
     ) {
         let packed = packet.packed;
         packet.test_triangle(prim, &packed.items[prim as usize]);
+    }
+
+    fn instruction_set(_: InstructionSet) -> InstructionSet {
+        InstructionSet::Portable
     }
 
     #[inline]
@@ -204,6 +211,10 @@ impl Items for Blocks {
             }
             last = Some(prim);
         }
+    }
+
+    fn instruction_set(set: InstructionSet) -> InstructionSet {
+        set
     }
 
     #[inline]

@@ -136,6 +136,10 @@ pub trait Accelerator: Send + Sync {
     fn occluded_counted(&self, rays: &[Ray], blocked: &mut [bool], counts: &mut [Counts]);
     /// Every step and every test of the closest-hit query of a valid ray; the same answer as [`Accelerator::closest`].
     fn inspect(&self, ray: &Ray) -> Recording;
+    /// The instruction set that batches are traced with; [`InstructionSet::Portable`] where it makes no difference.
+    fn instruction_set(&self) -> InstructionSet {
+        InstructionSet::Portable
+    }
     /// Sizes and shape of the structure.
     fn stats(&self) -> StructureStats;
     /// Bytes of structure and packed triangles together.

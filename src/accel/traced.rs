@@ -161,6 +161,10 @@ impl<S: Structure, K: Kernel> Accelerator for Traced<S, K> {
         Recording { visits, hit }
     }
 
+    fn instruction_set(&self) -> InstructionSet {
+        S::Items::instruction_set(self.set)
+    }
+
     fn stats(&self) -> StructureStats {
         self.structure.stats()
     }

@@ -1,4 +1,6 @@
-//! The matrix: every accelerator with every choice of its parameters × every kernel × every scene, each its own test.
+//! The matrix: every accelerator × every kernel × every scene, each its own test; for some kernels every choice of the
+//! accelerator's parameters, the ways to trace a batch among them. Each case is traced with one thread and three and with
+//! every instruction set that the machine has.
 //!
 //! Made from the registries, so a new row is covered when it is added. A test's name is
 //! `accelerator[:parameters][@n]/kernel/scene`. What a case checks stands in [`check`], on what in [`scenes`] and
@@ -27,6 +29,9 @@ use setting::Setting;
 /// Kernels of which not even an error may differ on a scene of ordinary scale.
 const STRICT: &[&str] = &["woop", "moller-trumbore"];
 
+/// Kernels that every combination of an accelerator's parameters is tried with; the others meet its defaults.
+const EVERYWAY: &[&str] = &["woop", "moller-trumbore", "exact"];
+
 /// Every combination of the words of `specs`; numbers keep their defaults.
 fn combinations(specs: &'static [ParamSpec]) -> Vec<Params> {
     specs
@@ -52,17 +57,24 @@ fn combinations(specs: &'static [ParamSpec]) -> Vec<Params> {
 /// The n at which all parameters of an accelerator are tried: small, and not one at which cells meet the scenes' planes.
 const EVERYWHERE: u32 = 5;
 
-/// What is built of one accelerator over one scene: all its parameters, and the defaults at several n, where it has
-/// one, the predicted among them.
-fn builds(entry: &'static AcceleratorEntry, scene: &Setting) -> Vec<(Choice, Option<u32>)> {
+/// What is built of one accelerator over one scene: the defaults at several n, where it has one, the predicted among them,
+/// and, where `all` is asked for, every combination of its parameters.
+fn builds(
+    entry: &'static AcceleratorEntry,
+    scene: &Setting,
+    all: bool,
+) -> Vec<(Choice, Option<u32>)> {
     let choice = |params| Choice {
         name: entry.name.to_owned(),
         params,
     };
     let n = entry.resolution.map(|_| EVERYWHERE);
-    let all = combinations(entry.params)
-        .into_iter()
-        .map(|params| (choice(params), n));
+    let params = if all {
+        combinations(entry.params)
+    } else {
+        vec![Params::defaults(entry.params)]
+    };
+    let all = params.into_iter().map(|params| (choice(params), n));
     if n.is_none() {
         return all.collect();
     }
@@ -84,14 +96,15 @@ fn trials(tally: &Tally) -> Vec<Trial> {
     for scene in scenes::all() {
         let scene = Arc::new(scene);
         for entry in ACCELERATORS.iter().filter(|a| !a.control) {
-            for (accel, n) in builds(entry, &scene) {
-                for kernel in kernels() {
+            for kernel in kernels() {
+                let all = EVERYWAY.contains(&kernel.name.as_str());
+                for (accel, n) in builds(entry, &scene, all) {
                     let case = Case {
                         scene: Arc::clone(&scene),
                         accel: accel.clone(),
                         n,
                         strict: scene.ordinary && STRICT.contains(&kernel.name.as_str()),
-                        kernel,
+                        kernel: kernel.clone(),
                     };
                     let at = n.map_or(String::new(), |n| format!("@{n}"));
                     let name = format!(

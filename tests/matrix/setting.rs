@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock};
 
 use raylab::accel::{self, Accelerator};
+use raylab::geometry::lanes::InstructionSet;
 use raylab::geometry::{DVec3, Hit, Ray, Vec3, gamma};
 use raylab::oracle::{self, Oracle};
 use raylab::registry::Choice;
@@ -96,7 +97,18 @@ impl Setting {
         n: Option<u32>,
         kernel: &Choice,
     ) -> Result<Box<dyn Accelerator>, String> {
-        accel::build(&self.mesh, accel, n, kernel, 4 << 30).map_err(|e| e.to_string())
+        self.build_for(InstructionSet::best(), accel, n, kernel)
+    }
+
+    /// As [`Setting::build`], to be traced with an instruction set.
+    pub fn build_for(
+        &self,
+        set: InstructionSet,
+        accel: &Choice,
+        n: Option<u32>,
+        kernel: &Choice,
+    ) -> Result<Box<dyn Accelerator>, String> {
+        accel::build_for(set, &self.mesh, accel, n, kernel, 4 << 30).map_err(|e| e.to_string())
     }
 
     /// What brute force with `kernel` answers.

@@ -44,17 +44,20 @@ struct Best {
 /// Marks that the last child would stay unused.
 const TAKE_FEWER: u8 = 0;
 
-fn half_area(node: &BinaryNode) -> f32 {
-    let d = node.bounds().extent();
+/// Half the surface of a node's box, in `f64` where it cannot overflow.
+fn half_area(node: &BinaryNode) -> f64 {
+    let d = node.bounds().max.as_dvec3() - node.bounds().min.as_dvec3();
     d.x * d.y + d.y * d.z + d.z * d.x
 }
 
 /// The best spread of every subtree.
 fn plan(nodes: &[BinaryNode]) -> Vec<Best> {
     let mut plan = vec![Best::default(); nodes.len()];
+    let whole = nodes.first().map_or(1.0, half_area).max(f64::MIN_POSITIVE);
     // Children lie behind their parents.
     for (i, node) in nodes.iter().enumerate().rev() {
-        let area = half_area(node);
+        // The chance that a ray through the scene meets the node.
+        let area = (half_area(node) / whole) as f32;
         plan[i] = if node.is_leaf() {
             Best {
                 cost: [area * TEST; WIDTH],
@@ -95,7 +98,7 @@ fn spread(area: f32, left: &Best, right: &Best) -> Best {
     } else {
         f32::INFINITY
     };
-    best.is_leaf = as_leaf <= as_node;
+    best.is_leaf = blocks <= MOST_BLOCKS && as_leaf <= as_node;
     best.cost[0] = as_leaf.min(as_node);
     for j in 1..WIDTH - 1 {
         if best.cost[j - 1] <= best.cost[j] {

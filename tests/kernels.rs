@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 use raylab::geometry::lanes::{F32x8, Lane, LaneMask, LaneRay};
 use raylab::geometry::{Hit, Ray, Vec3};
-use raylab::kernel::{KERNELS, Kernel, KernelUser, LaneHit, dispatch, entry, parse};
+use raylab::kernel::{KERNELS, Kernel, KernelUser, LaneHit, dispatch, entry, methods, parse};
 use raylab::oracle;
 use raylab::registry::Choice;
 
@@ -264,6 +264,9 @@ fn names_are_unique_and_kebab_case_and_every_row_says_what_it_must() {
         assert!(kernel.name.chars().all(kebab));
         assert!(KERNELS[..i].iter().all(|k| k.name != kernel.name));
         assert!(kernel.about.ends_with('.'), "{}", kernel.name);
+        let marked = kernel.about.starts_with("Control: ");
+        assert_eq!(marked, kernel.control, "{}", kernel.name);
+        assert_eq!(methods().any(|k| k.name == kernel.name), !kernel.control);
         for text in [kernel.paper, kernel.operations, kernel.known_failures] {
             assert!(!text.is_empty(), "{}", kernel.name);
         }

@@ -232,10 +232,14 @@ impl<'a, T: Items, K: Kernel, I: Isa, const OCCLUSION: bool> Packet<'a, T, K, I,
     #[inline(always)]
     fn offer(&mut self, vector: usize, prim: u32, hit: &LaneHit<1, I::Rays>) {
         use crate::geometry::lanes::LaneMask;
-        let mut mask = hit.mask;
-        if !K::EXACT_T {
-            mask = mask & hit.t.ge(self.t_min[vector]) & hit.t.le(self.t_most[vector]);
+        let (mut least, mut most) = (self.t_min[vector], self.t_most[vector]);
+        if K::EXACT_T {
+            // More than an ulp wider: there the kernel is asked.
+            let (ulps, subnormal) = (I::Rays::splat(2.0 * f32::EPSILON), I::Rays::splat(1e-44));
+            least = least - (least.abs() * ulps + subnormal);
+            most = most + (most.abs() * ulps + subnormal);
         }
+        let mask = hit.mask & hit.t.ge(least) & hit.t.le(most);
         let first = vector * VECTOR;
         let mut met = mask.bits() & ((1_u64 << (self.rays.len() - first).min(VECTOR)) - 1) as u32;
         if met == 0 {
@@ -323,7 +327,9 @@ pub(super) fn can_hit<L: Lane<8>>(corners: &[LaneVec3<L>; 3], dirs: &[Vec3; 2]) 
     let fast = dirs[0].abs().max(dirs[1].abs()).max_element();
     // A kernel's edge functions are off by less than 20 roundings of products of two distances and a direction's
     // component, these here by less than 10 more, of each of three components.
-    let slack = far * far * L::splat(fast * 96.0 * 0.5 * f32::EPSILON);
+    // The last term is what underflow can lose, of coordinates and of directions.
+    let slack =
+        far * far * L::splat(fast * 96.0 * 0.5 * f32::EPSILON) + L::splat(fast * 1e-43 + 1e-43);
     let [ab, bc, ca] = [
         reach::<L>(a.cross(*b), dirs),
         reach::<L>(b.cross(*c), dirs),

@@ -45,18 +45,15 @@ impl<'a, T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool>
     /// about every hit.
     #[inline(always)]
     pub fn t_most(&self) -> f32 {
-        if K::EXACT_T {
-            f32::INFINITY
-        } else {
-            self.best.t.min(self.ray.t_max)
-        }
+        let most = self.best.t.min(self.ray.t_max);
+        if K::EXACT_T { most.next_up() } else { most }
     }
 
     /// Least `t` that can be accepted, with the same proviso.
     #[inline(always)]
     pub fn t_least(&self) -> f32 {
         if K::EXACT_T {
-            f32::NEG_INFINITY
+            self.ray.t_min.next_down()
         } else {
             self.ray.t_min
         }

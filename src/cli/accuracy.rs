@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use crate::accel;
-use crate::kernel::KERNELS;
+use crate::kernel;
 use crate::lab::{self, AccuracyEvent, AccuracyPlan, Control, Plan};
 use crate::report::{self, Provenance, Report, ReportError, Run};
 
@@ -134,7 +134,7 @@ fn plan(args: &AccuracyArgs) -> Result<AccuracyPlan, Failure> {
         list if list.is_empty() => default.iter().map(|&d| d.to_owned()).collect(),
         list => list,
     };
-    let kernels: Vec<&str> = KERNELS.iter().map(|k| k.name).collect();
+    let kernels: Vec<&str> = kernel::methods().map(|k| k.name).collect();
     let (accels, kernels) = with_axes(
         &or(&args.accel, &[accel::DEFAULT]),
         &or(&args.kernel, &kernels),

@@ -1,7 +1,7 @@
 //! Lanes: a kernel's formula is written once over [`Lane`] and runs on one `f32` or on `W` of them.
 //!
-//! Every operation is the IEEE one, in the order written; nothing here fuses a multiplication with an addition, so a
-//! formula gives the same bits in every lane width and on every instruction set.
+//! Every operation is the IEEE one, in the order written; only [`Lane::mul_add`] fuses a multiplication with an addition,
+//! where a formula says so. So a formula gives the same bits in every lane width and on every instruction set.
 //!
 //! Source: the trait follows the shape of the `Vector` trait of the memchr crate (one trait, one small type a width).
 //! Differs: masks are values of their own type, so that the scalar form compiles to plain branches.
@@ -83,6 +83,9 @@ pub trait Lane<const W: usize>:
     fn greatest(self) -> f32 {
         -(-self).least()
     }
+    /// `self·factor + term`, rounded once on every instruction set; [`Portable`] lanes call a function for each number.
+    #[must_use]
+    fn mul_add(self, factor: Self, term: Self) -> Self;
     /// Absolute value.
     #[must_use]
     fn abs(self) -> Self;
@@ -145,6 +148,10 @@ impl Lane<1> for f32 {
     #[inline(always)]
     fn min(self, other: Self) -> Self {
         if self < other { self } else { other }
+    }
+    #[inline(always)]
+    fn mul_add(self, factor: Self, term: Self) -> Self {
+        Self::mul_add(self, factor, term)
     }
     #[inline(always)]
     fn abs(self) -> Self {
@@ -286,6 +293,20 @@ impl<L> LaneVec3<L> {
             x: self.x - o.x,
             y: self.y - o.y,
             z: self.z - o.z,
+        }
+    }
+
+    /// Componentwise sum.
+    #[inline(always)]
+    #[must_use]
+    pub fn plus<const W: usize>(self, o: Self) -> Self
+    where
+        L: Lane<W>,
+    {
+        Self {
+            x: self.x + o.x,
+            y: self.y + o.y,
+            z: self.z + o.z,
         }
     }
 

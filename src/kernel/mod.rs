@@ -15,14 +15,34 @@ use crate::geometry::{DVec3, Hit, Ray, Vec3};
 use crate::registry::{Choice, ChoiceError, ParamSpec};
 use crate::scene::Mesh;
 
+mod badouel;
+mod baldwin_weber;
+mod corners;
 mod error;
+pub mod exact;
+mod havel_herout;
+mod kensler_shirley;
+mod known;
 mod moller_trumbore;
+mod moller_trumbore_f64;
+mod pbrt;
+mod plucker;
+mod shear;
 mod sheet;
 mod sheet_signed;
 mod sheet_unsigned;
 mod woop;
 
+pub use badouel::Badouel;
+pub use baldwin_weber::BaldwinWeber;
+pub use corners::Corners;
+pub use exact::Exact;
+pub use havel_herout::HavelHerout;
+pub use kensler_shirley::KenslerShirley;
 pub use moller_trumbore::MollerTrumbore;
+pub use moller_trumbore_f64::MollerTrumboreF64;
+pub use pbrt::Pbrt;
+pub use plucker::Plucker;
 pub use sheet_signed::SheetSigned;
 pub use sheet_unsigned::SheetUnsigned;
 pub use woop::Woop;
@@ -119,6 +139,8 @@ pub struct KernelEntry {
     pub paper: &'static str,
     /// Whether no ray slips between triangles that share an edge or vertex.
     pub watertight: bool,
+    /// Whether it shows a known mistake: an exhibit, chosen only by name, and no method to use.
+    pub control: bool,
     /// Bytes kept for each triangle.
     pub bytes_per_triangle: usize,
     /// What one test costs: multiplications, additions, divisions.
@@ -182,10 +204,27 @@ macro_rules! kernels {
 
 kernels![
     SheetSigned<false>,
+    SheetSigned<true>,
     SheetUnsigned<false>,
-    MollerTrumbore,
-    Woop
+    SheetUnsigned<true>,
+    MollerTrumbore<false>,
+    MollerTrumboreF64,
+    Badouel,
+    KenslerShirley,
+    BaldwinWeber,
+    HavelHerout,
+    Plucker,
+    Woop<false>,
+    Pbrt,
+    Exact,
+    Woop<true>,
+    MollerTrumbore<true>,
 ];
+
+/// The rows of [`KERNELS`] that are methods to use: all but the controls.
+pub fn methods() -> impl Iterator<Item = &'static KernelEntry> {
+    KERNELS.iter().filter(|k| !k.control)
+}
 
 /// Reads `name` or `name:key=value…`.
 ///

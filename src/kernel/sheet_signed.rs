@@ -38,6 +38,7 @@ impl<const LOCAL: bool> SheetSigned<LOCAL> {
         },
         paper: "the exercise sheet; Glassner 1989, An Introduction to Ray Tracing, ch. 2",
         watertight: false,
+        control: false,
         bytes_per_triangle: 52,
         operations: "45 multiplications, 44 additions, 2 divisions",
         known_failures: if LOCAL {

@@ -1,39 +1,46 @@
-//! Woop, Benthin and Wald's watertight test: the triangle is sheared so that the ray runs along an axis from the origin,
-//! and three edge functions are evaluated in the plane.
+//! Woop, Benthin and Wald's watertight test, and the same with fused edge functions, which is no longer watertight.
 //!
-//! ```text
-//!      y ^   C            edge functions: U = C x B, V = A x C, W = B x A,
-//!        |  / \           evaluated at the ray, which is the point 0;
-//!        | / 0 \          each shared edge gives both its triangles the same product, so the same sign
-//!        |A ---- B
-//!        +--------> x
-//! ```
+//! Rounding is monotone, so fl(ab) − fl(cd) has the right sign or is 0, and both triangles at an edge find the same. A
+//! fused multiply-add rounds only one of the products: fl(ab − fl(cd)) of one triangle and fl(cd − fl(ab)) of its
+//! neighbour may both be negative, and the ray slips through. `FUSED` (the kernel `woop-fma`) shows that, written out,
+//! as compilers do it that contract expressions.
 //!
 //! **Source:** S. Woop, C. Benthin and I. Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
-//! **Differs:** no back-face culling, so the winding is not kept by swapping axes. Edge functions that are 0 are computed
-//! again in `f64`, as in the paper, lane by lane, unless two others have opposite signs. A triangle without area is made one point when it is packed. Nothing here may be fused: rounding is monotone, so fl(ab) − fl(cd) has
-//! the right sign or is 0, and a fused multiply-add breaks exactly that.
+//! **Differs:** see [`super::shear`]; a triangle without area is made one point when it is packed.
 
-use crate::geometry::lanes::{Lane, LaneMask, LaneRay, LaneVec3};
-use crate::geometry::{DVec3, Ray, Vec3};
+use crate::geometry::lanes::{Lane, LaneRay, LaneVec3};
+use crate::geometry::{Ray, Vec3};
 use crate::registry::Params;
 
-use super::error::{self, HUGE, TINY, gamma};
-use super::{Kernel, KernelEntry, LaneHit};
+use super::shear::{self, Edge, Prepared};
+use super::{Corners, Kernel, KernelEntry, LaneHit};
 
-/// The kernel `woop`.
+/// The kernel `woop`, or `woop-fma`.
 #[derive(Debug, Clone, Copy)]
-pub struct Woop;
+pub struct Woop<const FUSED: bool>;
 
-impl Woop {
+impl<const FUSED: bool> Woop<FUSED> {
     pub(super) const ENTRY: KernelEntry = KernelEntry {
-        name: "woop",
-        about: "Watertight: shears the triangle onto the ray and evaluates edge functions whose signs agree along shared edges.",
+        name: if FUSED { "woop-fma" } else { "woop" },
+        about: if FUSED {
+            "Control: woop with fused multiply-adds in its edge functions, which is no longer watertight."
+        } else {
+            "Watertight: shears the triangle onto the ray and evaluates edge functions whose signs agree along shared edges."
+        },
         paper: "Woop, Benthin and Wald 2013, Watertight Ray/Triangle Intersection",
-        watertight: true,
+        watertight: !FUSED,
+        control: FUSED,
         bytes_per_triangle: 36,
-        operations: "21 multiplications, 24 additions, 1 division (hit only)",
-        known_failures: "watertight, not exact: a ray aimed at an edge may report the triangle beside the true one; triangles below about 1e-19 in size vanish",
+        operations: if FUSED {
+            "18 multiplications, 3 fused multiply-adds, 19 additions, 1 division (hit only)"
+        } else {
+            "21 multiplications, 22 additions, 1 division (hit only)"
+        },
+        known_failures: if FUSED {
+            "leaks through shared edges where woop does not: a fused product is rounded on one side of the edge only"
+        } else {
+            "watertight, not exact: a ray aimed at an edge may report the triangle beside the true one; triangles below about 1e-19 in size vanish"
+        },
         params: &[],
     };
 
@@ -42,191 +49,64 @@ impl Woop {
     }
 }
 
-/// The corners.
-#[derive(Debug, Clone, Copy)]
-pub struct Packed<const W: usize> {
-    corners: [[[f32; W]; 3]; 3],
-}
-
-/// The axes in the order x, y, z of the sheared frame, and the shear.
-#[derive(Debug, Clone, Copy)]
-pub struct Prepared<L> {
-    axes: [usize; 3],
-    origin: LaneVec3<L>,
-    shear: LaneVec3<L>,
-}
-
-/// The frame's axes for a direction: z is the axis of its largest component, the last of equals.
-fn frame(dir: Vec3) -> [usize; 3] {
-    let d = dir.abs().to_array();
-    let z = (1..3).fold(0, |best, a| if d[a] >= d[best] { a } else { best });
-    [(z + 1) % 3, (z + 2) % 3, z]
-}
-
-/// A corner relative to the ray's origin, in the frame in which the ray runs along z.
-#[inline(always)]
-fn sheared<const W: usize, L: Lane<W>>(ray: &Prepared<L>, corner: &[[f32; W]; 3]) -> LaneVec3<L> {
-    let [kx, ky, kz] = ray.axes;
-    let x = L::load(&corner[kx]) - ray.origin.x;
-    let y = L::load(&corner[ky]) - ray.origin.y;
-    let z = L::load(&corner[kz]) - ray.origin.z;
-    LaneVec3 {
-        x: x - ray.shear.x * z,
-        y: y - ray.shear.y * z,
-        z,
+impl<const FUSED: bool> Edge for Woop<FUSED> {
+    #[inline(always)]
+    fn edge<const W: usize, L: Lane<W>>(a: L, b: L, c: L, d: L) -> L {
+        if FUSED {
+            a.mul_add(b, -(c * d))
+        } else {
+            a * b - c * d
+        }
     }
 }
 
-/// Whether two of the three have opposite signs.
-#[inline(always)]
-fn apart<const W: usize, L: Lane<W>>(u: L, v: L, w: L) -> L::Mask {
-    let zero = L::splat(0.0);
-    (u.lt(zero) | v.lt(zero) | w.lt(zero)) & (u.gt(zero) | v.gt(zero) | w.gt(zero))
-}
-
-/// fl(fl(ab) − fl(cd)).
-#[inline(always)]
-fn edge<const W: usize, L: Lane<W>>(a: L, b: L, c: L, d: L) -> L {
-    a * b - c * d
-}
-
-/// The lanes of `zero` again in `f64`, where both products are exact.
-#[cold]
-fn edge_exact<const W: usize, L: Lane<W>>(zero: u32, rounded: L, a: L, b: L, c: L, d: L) -> L {
-    L::from_fn(|lane| {
-        if zero >> lane & 1 == 1 {
-            let [a, b, c, d] = [a, b, c, d].map(|x| f64::from(x.get(lane)));
-            (a * b - c * d) as f32
-        } else {
-            rounded.get(lane)
-        }
-    })
-}
-
-impl Kernel for Woop {
-    type Packed<const W: usize> = Packed<W>;
+impl<const FUSED: bool> Kernel for Woop<FUSED> {
+    type Packed<const W: usize> = Corners<W>;
     type Prepared<const W: usize, L: Lane<W>> = Prepared<L>;
 
-    fn pack<const W: usize>(&self, corners: impl Fn(usize) -> [Vec3; 3]) -> Packed<W> {
-        Packed {
-            corners: std::array::from_fn(|i| {
-                super::rows(|lane| super::with_area(corners(lane))[i])
-            }),
+    fn pack<const W: usize>(&self, corners: impl Fn(usize) -> [Vec3; 3]) -> Corners<W> {
+        if !FUSED {
+            return Corners::with_area(corners);
         }
+        // Fused edge functions of one point are rounding errors, not 0. NaN gives a NaN t, which nobody accepts.
+        Corners::of(|lane| match super::with_area(corners(lane)) {
+            [a, b, c] if a == b && b == c => [Vec3::NAN; 3],
+            corners => corners,
+        })
     }
 
     #[inline(always)]
-    fn lane(block: &Packed<8>, lane: usize) -> Packed<1> {
-        Packed {
-            corners: [0, 1, 2].map(|i| super::lane_of(&block.corners[i], lane)),
-        }
+    fn lane(block: &Corners<8>, lane: usize) -> Corners<1> {
+        block.lane(lane)
     }
 
     const PACKETS: bool = true;
 
     #[inline(always)]
-    fn corners<L: Lane<8>>(block: &Packed<8>) -> [LaneVec3<L>; 3] {
-        let [a, b, c] = &block.corners;
-        [LaneVec3::load(a), LaneVec3::load(b), LaneVec3::load(c)]
+    fn corners<L: Lane<8>>(block: &Corners<8>) -> [LaneVec3<L>; 3] {
+        block.load()
     }
 
     #[inline(always)]
     fn prepare<const W: usize, L: Lane<W>>(&self, lead: &Ray, rays: &LaneRay<L>) -> Prepared<L> {
-        let axes = frame(lead.dir);
-        let dir = rays.dir.permuted(axes);
-        Prepared {
-            axes,
-            origin: rays.origin.permuted(axes),
-            shear: LaneVec3 {
-                x: dir.x / dir.z,
-                y: dir.y / dir.z,
-                z: L::splat(1.0) / dir.z,
-            },
-        }
+        shear::prepare(lead, rays)
     }
 
     #[inline(always)]
     fn same_frame<L: Lane<1>>(lead: &Ray, dirs: &LaneVec3<L>) -> bool {
-        let axes = frame(lead.dir);
-        let [x, y, z] = [dirs.x.abs(), dirs.y.abs(), dirs.z.abs()];
-        // The last of equals is the largest.
-        let differs = match axes[2] {
-            0 => x.le(y) | x.le(z),
-            1 => y.lt(x) | y.le(z),
-            _ => z.lt(x) | z.lt(y),
-        };
-        !differs.any()
+        shear::same_frame(lead, dirs)
     }
 
     #[inline(always)]
     fn intersect<const W: usize, L: Lane<W>>(
         &self,
         ray: &Prepared<L>,
-        tri: &Packed<W>,
+        tri: &Corners<W>,
     ) -> Option<LaneHit<W, L>> {
-        let zero = L::splat(0.0);
-        let a = sheared::<W, L>(ray, &tri.corners[0]);
-        let b = sheared::<W, L>(ray, &tri.corners[1]);
-        let c = sheared::<W, L>(ray, &tri.corners[2]);
-        let mut u = edge(c.x, b.y, c.y, b.x);
-        let mut v = edge(a.x, c.y, a.y, c.x);
-        let mut w = edge(b.x, a.y, b.y, a.x);
-        // Opposite signs are right, so a miss is sure; else a 0 may hide a sign.
-        let on_edge = (!apart::<W, L>(u, v, w) & (u.eq(zero) | v.eq(zero) | w.eq(zero))).bits();
-        if on_edge != 0 {
-            u = edge_exact(on_edge, u, c.x, b.y, c.y, b.x);
-            v = edge_exact(on_edge, v, a.x, c.y, a.y, c.x);
-            w = edge_exact(on_edge, w, b.x, a.y, b.y, a.x);
-        }
-        let det = u + v + w;
-        // A NaN passes all of these and gives a NaN t.
-        let mask = !apart::<W, L>(u, v, w) & !det.eq(zero);
-        if !mask.any() {
-            return None;
-        }
-        let inv_det = L::splat(1.0) / det;
-        let z = ray.shear.z;
-        Some(LaneHit {
-            mask,
-            t: (u * (z * a.z) + v * (z * b.z) + w * (z * c.z)) * inv_det,
-            u: v * inv_det,
-            v: w * inv_det,
-        })
+        Some(shear::test::<W, L, Self>(ray, tri)?.hit())
     }
 
     fn t_error(&self, ray: &Ray, corners: &[Vec3; 3], t: f32) -> f32 {
-        let [kx, ky, kz] = frame(ray.dir);
-        let dir = ray.dir.as_dvec3();
-        let raw = error::relative(corners, ray.origin).map(|p| DVec3::new(p[kx], p[ky], p[kz]));
-        let shear = DVec3::new(dir[kx], dir[ky], dir[kz]) / dir[kz];
-        let reach = raw.iter().fold(DVec3::ZERO, |m, p| m.max(p.abs()));
-        // Each sheared coordinate: a difference, a quotient, a product and a difference; shear.z is 1 here.
-        let dx = gamma(4) * (reach.x + shear.x.abs() * reach.z) + TINY * (1.0 + reach.z);
-        let dy = gamma(4) * (reach.y + shear.y.abs() * reach.z) + TINY * (1.0 + reach.z);
-        let [a, b, c] =
-            raw.map(|p| DVec3::new(p.x - shear.x * p.z, p.y - shear.y * p.z, p.z / dir[kz]));
-        let most = |f: fn(&DVec3) -> f64| f(&a).abs().max(f(&b).abs()).max(f(&c).abs());
-        let (x, y, z) = (most(|p| p.x) + dx, most(|p| p.y) + dy, most(|p| p.z));
-        // Both products of an edge function: of wrong factors, and rounded themselves.
-        let de = 2.0 * (gamma(2) * x * y + dx * y + dy * x + TINY);
-        let edges = [
-            c.x * b.y - c.y * b.x,
-            a.x * c.y - a.y * c.x,
-            b.x * a.y - b.y * a.x,
-        ];
-        let det: f64 = edges.iter().sum();
-        let rest = det.abs() - 3.0 * de;
-        if rest <= 3.0 * de || reach.max_element().max(6.0 * x * y * z.max(1.0)) > HUGE {
-            return f32::INFINITY;
-        }
-        // The edge functions of a hit have one sign, so t is a mean of the corners' z, weighted by them: their errors
-        // move it by the spread of z, those of z by themselves.
-        let t = f64::from(t);
-        let spread = (a.z - t).abs() + (b.z - t).abs() + (c.z - t).abs();
-        let dz = gamma(3) * z + TINY * (1.0 + reach.z);
-        let rounding = gamma(8) * z + 3.0 * TINY * z.max(1.0) / rest;
-        let known = dz + rounding;
-        // E <= de·(spread + 3·E) / rest + known, solved for the error E; the last term is the rounding of t + E.
-        error::round_up((de * spread + known * rest) / (rest - 3.0 * de) + gamma(1) * t.abs())
+        shear::t_error(ray, corners, t)
     }
 }

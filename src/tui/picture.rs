@@ -1,7 +1,7 @@
 //! The picture: what is wished for, what was asked of the picture thread, what it has shown.
 
 use crate::accel::{self, ACCELERATORS};
-use crate::kernel::{self, KERNELS};
+use crate::kernel;
 use crate::lab::{NRule, Plan};
 use crate::preview::{Cells, SYMBOLS, Symbols};
 use crate::registry::{Choice, Params};
@@ -81,7 +81,9 @@ impl Wish {
             orbit: Orbit::HOME,
             accel: choice("bvh", ACCELERATORS[0].name, |name| accel::parse(name).ok()),
             n: NRule::Auto,
-            kernel: choice("woop", KERNELS[0].name, |name| kernel::parse(name).ok()),
+            kernel: choice("woop", kernel::KERNELS[0].name, |name| {
+                kernel::parse(name).ok()
+            }),
             channel: &CHANNELS[0],
             symbols: Symbols::default(),
         }
@@ -101,9 +103,10 @@ impl Wish {
         }
     }
 
-    /// Takes the next kernel, with its default parameters.
+    /// Takes the next kernel that is no control, with its default parameters.
     pub fn step_kernel(&mut self) {
-        let name = turned(KERNELS, |k| k.name == self.kernel.name, 1).name;
+        let methods: Vec<_> = kernel::methods().collect();
+        let name = turned(&methods, |k| k.name == self.kernel.name, 1).name;
         if let Ok(choice) = kernel::parse(name) {
             self.kernel = choice;
         }
@@ -353,7 +356,7 @@ mod tests {
         for _ in 0..ACCELERATORS.len() {
             wish.step_accel(1);
         }
-        for _ in 0..KERNELS.len() {
+        for _ in kernel::methods() {
             wish.step_kernel();
         }
         for _ in 0..CHANNELS.len() {

@@ -80,6 +80,13 @@ impl<L: Lane<8>> Lane<1> for Pair<L> {
         Self(self.0.min(other.0), self.1.min(other.1))
     }
     #[inline(always)]
+    fn mul_add(self, factor: Self, term: Self) -> Self {
+        Self(
+            self.0.mul_add(factor.0, term.0),
+            self.1.mul_add(factor.1, term.1),
+        )
+    }
+    #[inline(always)]
     fn abs(self) -> Self {
         Self(self.0.abs(), self.1.abs())
     }

@@ -125,6 +125,12 @@ impl Lane<8> for F32x8 {
         each(self, other, |a, b| if a < b { a } else { b })
     }
     #[inline(always)]
+    fn mul_add(self, factor: Self, term: Self) -> Self {
+        Self(std::array::from_fn(|i| {
+            self.0[i].mul_add(factor.0[i], term.0[i])
+        }))
+    }
+    #[inline(always)]
     fn abs(self) -> Self {
         Self(self.0.map(f32::abs))
     }

@@ -28,6 +28,7 @@ fn check<const W: usize, L: Lane<W>>(xs: &[f32; 16], ys: &[f32; 16]) {
         a.sqrt(),
         a.max(b),
         a.min(b),
+        a.mul_add(b, a),
     ];
     let masks = [a.lt(b), a.le(b), a.eq(b), a.gt(b), a.ge(b), !a.lt(b)];
     let chosen = L::select(a.lt(b), a, b);
@@ -45,6 +46,7 @@ fn check<const W: usize, L: Lane<W>>(xs: &[f32; 16], ys: &[f32; 16]) {
             x.sqrt(),
             greater,
             less,
+            x.mul_add(y, x),
         ];
         for (k, (lane, one)) in lanes.iter().zip(ones).enumerate() {
             assert!(

@@ -1,0 +1,215 @@
+//! What the watertight kernels share: the triangle is sheared so that the ray runs along an axis from the origin, and
+//! three edge functions are evaluated in the plane across it.
+//!
+//! ```text
+//!      y ^   C            edge functions: U = C x B, V = A x C, W = B x A,
+//!        |  / \           evaluated at the ray, which is the point 0;
+//!        | / 0 \          each shared edge gives both its triangles the same product, so the same sign
+//!        |A ---- B
+//!        +--------> x
+//! ```
+//!
+//! Kernels differ in how an edge function is computed; one that is 0 is computed again in `f64`, lane by lane, unless two
+//! others have opposite signs.
+//!
+//! **Source:** S. Woop, C. Benthin and I. Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
+//! **Differs:** no back-face culling, so the winding is not kept by swapping axes.
+
+use crate::geometry::lanes::{Lane, LaneMask, LaneRay, LaneVec3};
+use crate::geometry::{DVec3, Ray, Vec3};
+
+use super::error::{self, HUGE, TINY, gamma};
+use super::{Corners, LaneHit};
+
+/// The axes in the order x, y, z of the sheared frame, and the shear.
+#[derive(Debug, Clone, Copy)]
+pub struct Prepared<L> {
+    axes: [usize; 3],
+    pub(super) origin: LaneVec3<L>,
+    shear: LaneVec3<L>,
+}
+
+/// How a kernel computes an edge function.
+pub(super) trait Edge {
+    /// a·b − c·d.
+    fn edge<const W: usize, L: Lane<W>>(a: L, b: L, c: L, d: L) -> L;
+}
+
+/// Triangles of which some lane may be hit.
+pub(super) struct Sheared<L, M> {
+    /// Which lanes are hit.
+    pub mask: M,
+    /// U, V and W: the weights of corners 0, 1 and 2, not yet divided by their sum.
+    pub edges: [L; 3],
+    /// U + V + W.
+    pub det: L,
+    /// The sheared corners, z scaled to be `t`.
+    pub corners: [LaneVec3<L>; 3],
+}
+
+/// The frame's axes for a direction: z is the axis of its largest component, the last of equals.
+pub(super) fn frame(dir: Vec3) -> [usize; 3] {
+    let d = dir.abs().to_array();
+    let z = (1..3).fold(0, |best, a| if d[a] >= d[best] { a } else { best });
+    [(z + 1) % 3, (z + 2) % 3, z]
+}
+
+/// Whether rays with these directions have the frame of `lead`.
+#[inline(always)]
+pub(super) fn same_frame<L: Lane<1>>(lead: &Ray, dirs: &LaneVec3<L>) -> bool {
+    let (x, y, z) = (dirs.x.abs(), dirs.y.abs(), dirs.z.abs());
+    // The last of equals is the largest.
+    let differs = match frame(lead.dir)[2] {
+        0 => x.le(y) | x.le(z),
+        1 => y.lt(x) | y.le(z),
+        _ => z.lt(x) | z.lt(y),
+    };
+    !differs.any()
+}
+
+/// The lanes of `zero` again in `f64`, where both products are exact.
+#[cold]
+fn edge_exact<const W: usize, L: Lane<W>>(zero: u32, rounded: L, a: L, b: L, c: L, d: L) -> L {
+    L::from_fn(|lane| {
+        if zero >> lane & 1 == 1 {
+            let [a, b, c, d] = [a, b, c, d].map(|x| f64::from(x.get(lane)));
+            (a * b - c * d) as f32
+        } else {
+            rounded.get(lane)
+        }
+    })
+}
+
+/// The rays as the test reads them.
+#[inline(always)]
+pub(super) fn prepare<const W: usize, L: Lane<W>>(lead: &Ray, rays: &LaneRay<L>) -> Prepared<L> {
+    let axes = frame(lead.dir);
+    let dir = rays.dir.permuted(axes);
+    Prepared {
+        axes,
+        origin: rays.origin.permuted(axes),
+        shear: LaneVec3 {
+            x: dir.x / dir.z,
+            y: dir.y / dir.z,
+            z: L::splat(1.0) / dir.z,
+        },
+    }
+}
+
+/// A corner relative to the ray's origin, in the frame in which the ray runs along z.
+#[inline(always)]
+pub(super) fn sheared<const W: usize, L: Lane<W>>(
+    ray: &Prepared<L>,
+    corner: &[[f32; W]; 3],
+) -> LaneVec3<L> {
+    let [kx, ky, kz] = ray.axes;
+    let x = L::load(&corner[kx]) - ray.origin.x;
+    let y = L::load(&corner[ky]) - ray.origin.y;
+    let z = L::load(&corner[kz]) - ray.origin.z;
+    LaneVec3 {
+        x: x - ray.shear.x * z,
+        y: y - ray.shear.y * z,
+        z,
+    }
+}
+
+/// Whether two of the three have opposite signs.
+#[inline(always)]
+fn apart<const W: usize, L: Lane<W>>(u: L, v: L, w: L) -> L::Mask {
+    let zero = L::splat(0.0);
+    (u.lt(zero) | v.lt(zero) | w.lt(zero)) & (u.gt(zero) | v.gt(zero) | w.gt(zero))
+}
+
+/// Shears the triangles and tests which are hit, with the kernel's edge functions.
+#[inline(always)]
+pub(super) fn test<const W: usize, L: Lane<W>, E: Edge>(
+    ray: &Prepared<L>,
+    tri: &Corners<W>,
+) -> Option<Sheared<L, L::Mask>> {
+    let zero = L::splat(0.0);
+    let a = sheared::<W, L>(ray, &tri.0[0]);
+    let b = sheared::<W, L>(ray, &tri.0[1]);
+    let c = sheared::<W, L>(ray, &tri.0[2]);
+    let mut u = E::edge(c.x, b.y, c.y, b.x);
+    let mut v = E::edge(a.x, c.y, a.y, c.x);
+    let mut w = E::edge(b.x, a.y, b.y, a.x);
+    // Opposite signs are right, so a miss is sure; else a 0 may hide a sign.
+    let on_edge = (!apart::<W, L>(u, v, w) & (u.eq(zero) | v.eq(zero) | w.eq(zero))).bits();
+    if on_edge != 0 {
+        u = edge_exact(on_edge, u, c.x, b.y, c.y, b.x);
+        v = edge_exact(on_edge, v, a.x, c.y, a.y, c.x);
+        w = edge_exact(on_edge, w, b.x, a.y, b.y, a.x);
+    }
+    let det = u + v + w;
+    // A NaN passes all of these and gives a NaN t.
+    let mask = !apart::<W, L>(u, v, w) & !det.eq(zero);
+    if !mask.any() {
+        return None;
+    }
+    let z = ray.shear.z;
+    Some(Sheared {
+        mask,
+        edges: [u, v, w],
+        det,
+        corners: [
+            LaneVec3 { z: z * a.z, ..a },
+            LaneVec3 { z: z * b.z, ..b },
+            LaneVec3 { z: z * c.z, ..c },
+        ],
+    })
+}
+
+impl<L: Copy, M> Sheared<L, M> {
+    /// The hits: `t` is the mean of the corners' z, weighted by the edge functions.
+    #[inline(always)]
+    pub fn hit<const W: usize>(self) -> LaneHit<W, L>
+    where
+        L: Lane<W, Mask = M>,
+    {
+        let ([u, v, w], [a, b, c]) = (self.edges, self.corners);
+        let inv_det = L::splat(1.0) / self.det;
+        LaneHit {
+            mask: self.mask,
+            t: (u * a.z + v * b.z + w * c.z) * inv_det,
+            u: v * inv_det,
+            v: w * inv_det,
+        }
+    }
+}
+
+/// A bound on the error of `t`, for edge functions that are within γ(2) of the two products' size.
+pub(super) fn t_error(ray: &Ray, corners: &[Vec3; 3], t: f32) -> f32 {
+    let [kx, ky, kz] = frame(ray.dir);
+    let dir = ray.dir.as_dvec3();
+    let raw = error::relative(corners, ray.origin).map(|p| DVec3::new(p[kx], p[ky], p[kz]));
+    let shear = DVec3::new(dir[kx], dir[ky], dir[kz]) / dir[kz];
+    let reach = raw.iter().fold(DVec3::ZERO, |m, p| m.max(p.abs()));
+    // Each sheared coordinate: a difference, a quotient, a product and a difference; shear.z is 1 here.
+    let dx = gamma(4) * (reach.x + shear.x.abs() * reach.z) + TINY * (1.0 + reach.z);
+    let dy = gamma(4) * (reach.y + shear.y.abs() * reach.z) + TINY * (1.0 + reach.z);
+    let [a, b, c] =
+        raw.map(|p| DVec3::new(p.x - shear.x * p.z, p.y - shear.y * p.z, p.z / dir[kz]));
+    let most = |f: fn(&DVec3) -> f64| f(&a).abs().max(f(&b).abs()).max(f(&c).abs());
+    let (x, y, z) = (most(|p| p.x) + dx, most(|p| p.y) + dy, most(|p| p.z));
+    // Both products of an edge function: of wrong factors, and rounded themselves.
+    let de = 2.0 * (gamma(2) * x * y + dx * y + dy * x + TINY);
+    let edges = [
+        c.x * b.y - c.y * b.x,
+        a.x * c.y - a.y * c.x,
+        b.x * a.y - b.y * a.x,
+    ];
+    let det: f64 = edges.iter().sum();
+    let rest = det.abs() - 3.0 * de;
+    if rest <= 3.0 * de || reach.max_element().max(6.0 * x * y * z.max(1.0)) > HUGE {
+        return f32::INFINITY;
+    }
+    // The edge functions of a hit have one sign, so t is a mean of the corners' z, weighted by them: their errors
+    // move it by the spread of z, those of z by themselves.
+    let t = f64::from(t);
+    let spread = (a.z - t).abs() + (b.z - t).abs() + (c.z - t).abs();
+    let dz = gamma(3) * z + TINY * (1.0 + reach.z);
+    let rounding = gamma(8) * z + 3.0 * TINY * z.max(1.0) / rest;
+    let known = dz + rounding;
+    // E <= de·(spread + 3·E) / rest + known, solved for the error E; the last term is the rounding of t + E.
+    error::round_up((de * spread + known * rest) / (rest - 3.0 * de) + gamma(1) * t.abs())
+}

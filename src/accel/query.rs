@@ -41,15 +41,15 @@ impl<'a, T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool>
         }
     }
 
-    /// Greatest `t` that can still be preferred, as far as an `f32` tells; a kernel that compares more exactly is asked
-    /// about every hit.
+    /// Greatest `t` that can still be preferred, as far as an `f32` tells: the one above it for a kernel that compares more
+    /// exactly.
     #[inline(always)]
     pub fn t_most(&self) -> f32 {
         let most = self.best.t.min(self.ray.t_max);
         if K::EXACT_T { most.next_up() } else { most }
     }
 
-    /// Least `t` that can be accepted, with the same proviso.
+    /// Least `t` that can be accepted, likewise.
     #[inline(always)]
     pub fn t_least(&self) -> f32 {
         if K::EXACT_T {

@@ -38,12 +38,21 @@
 //! A structure meets a kernel in one place ([`accel::finish`]): it leads a [`accel::Visitor`] through its cells, and the
 //! visitor bundles the kernel, the query (closest hit or occlusion) and the counter (real or compiled away). So there is
 //! one traversal a structure and one formula a kernel, and every combination is monomorphised. What is dynamic is decided
-//! once a batch of rays.
+//! once a batch of rays: the instruction set, found when the program runs, and the way in which the rays are traced.
+//!
+//! ```text
+//!  batch of rays ─ instruction set ─> Structure::trace ─┬─ one ray after another ──┐
+//!                  (portable, AVX2,                      ├─ sixteen rays take turns ┼─> one traversal ─> Visitor::test(item)
+//!                   AVX-512)                             └─ rays of one origin as a ┘     an item: a triangle, or a block of
+//!                                                           packet                        eight, in the kernel's own packing
+//! ```
+//!
+//! The same [`geometry::lanes`] serve all of it: eight triangles against a ray, or sixteen rays against a triangle.
 //!
 //! # The rule
 //!
 //! An accelerator never changes a right answer: wherever brute force with the same kernel is right by the [`oracle`],
-//! every structure, query and thread count gives the same triangle and the same `t`, bit for bit. Where a kernel itself
+//! every structure, query, way, instruction set and thread count gives the same triangle and the same `t`, bit for bit. Where a kernel itself
 //! errs, answers may differ; such rays are counted as `kernel_errors`. The matrix of tests and every timed run check it.
 //!
 //! # Where to add what

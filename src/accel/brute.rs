@@ -61,7 +61,7 @@ impl Structure for Brute {
         0
     }
 
-    fn validate(&self, mesh: &Mesh) -> Result<(), String> {
+    fn validate(&self, mesh: &Mesh, _: &[u32]) -> Result<(), String> {
         if mesh.len() as u32 == self.triangles {
             Ok(())
         } else {

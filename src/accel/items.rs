@@ -33,6 +33,11 @@ pub trait Items: Sized + Send + Sync + 'static {
     /// Packs the triangles with these indices, in this order; for blocks whole ones, see [`fill`].
     fn pack<K: Kernel>(kernel: &K, mesh: &Mesh, slots: &[u32]) -> Vec<Self::Item<K>>;
 
+    /// The triangle in each lane of each block.
+    fn lanes<K: Kernel>(_items: &[Self::Item<K>]) -> Vec<u32> {
+        Vec::new()
+    }
+
     /// Prepares a ray.
     fn prepare<K: Kernel, I: Isa>(kernel: &K, ray: &Ray) -> Self::Prepared<K, I>;
 
@@ -142,6 +147,10 @@ impl Items for Blocks {
             prims: *prims,
         }));
         blocks
+    }
+
+    fn lanes<K: Kernel>(items: &[Self::Item<K>]) -> Vec<u32> {
+        items.iter().flat_map(|block| block.prims).collect()
     }
 
     #[inline(always)]

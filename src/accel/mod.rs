@@ -4,8 +4,9 @@
 //! ```text
 //! Structure (one file each: brute, grid, kd_tree, bvh)      Kernel (crate::kernel)
 //!        \  traverse(ray, visitor)                          /  intersect(ray, triangles)
-//!         `------------------  Traced<S, K>  --------------'
-//!                                   |
+//!         \                Items: single triangles, blocks  /
+//!          `-----------------  Traced<S, K>  --------------'
+//!                                   |   for the instruction set of the machine
 //!                        dyn Accelerator: batches of rays -> hits, counts
 //! ```
 //!
@@ -99,11 +100,12 @@ pub trait Structure: Send + Sync + 'static {
     fn memory_bytes(&self) -> u64;
 
     /// Checks what the structure promises: every triangle is referenced where it must be, boxes contain their parts,
-    /// depths stay within the stack.
+    /// depths stay within the stack. `lanes` is the triangle in each lane of each of its blocks, empty where its items are
+    /// single triangles.
     ///
     /// # Errors
     /// A sentence that names the first broken promise.
-    fn validate(&self, mesh: &Mesh) -> Result<(), String>;
+    fn validate(&self, mesh: &Mesh, lanes: &[u32]) -> Result<(), String>;
 }
 
 /// Sizes and shape of a structure; what does not apply is 0.

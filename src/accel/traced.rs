@@ -174,6 +174,7 @@ impl<S: Structure, K: Kernel> Accelerator for Traced<S, K> {
     }
 
     fn validate(&self) -> Result<(), String> {
-        self.structure.validate(&self.packed.mesh)
+        let lanes = S::Items::lanes(&self.packed.items);
+        self.structure.validate(&self.packed.mesh, &lanes)
     }
 }

@@ -81,6 +81,7 @@ pub trait Kernel: Debug + Clone + Send + Sync + 'static {
 
     /// The corners of a block's triangles, off by no more than a rounding of an edge; asked only where
     /// [`Kernel::PACKETS`] says so.
+    #[must_use]
     fn corners<L: Lane<8>>(_: &Self::Packed<8>) -> [LaneVec3<L>; 3] {
         [LaneVec3::splat(Vec3::ZERO); 3]
     }

@@ -232,8 +232,8 @@ impl Structure for BvhWide {
         (size_of_val(self.nodes.as_slice()) + self.filled.len()) as u64
     }
 
-    fn validate(&self, mesh: &Mesh) -> Result<(), String> {
-        validate::validate(self, mesh)
+    fn validate(&self, mesh: &Mesh, lanes: &[u32]) -> Result<(), String> {
+        validate::validate(self, mesh, lanes)
     }
 }
 

@@ -3,11 +3,13 @@
 use crate::geometry::Aabb;
 use crate::scene::Mesh;
 
+use super::super::items::LANES;
 use super::super::stack::MAX_DEPTH;
 use super::{BvhWide, Child};
 
-/// Checks boxes, depth, and that each node and block is some child's exactly once.
-pub(super) fn validate(tree: &BvhWide, mesh: &Mesh) -> Result<(), String> {
+/// Checks boxes, depth, that each node and block is some child's exactly once, and that every triangle is in some leaf
+/// whose box meets its own.
+pub(super) fn validate(tree: &BvhWide, mesh: &Mesh, lanes: &[u32]) -> Result<(), String> {
     if tree.depth as usize > MAX_DEPTH {
         return Err(format!(
             "depth {} exceeds the stack's {MAX_DEPTH}",
@@ -41,7 +43,29 @@ pub(super) fn validate(tree: &BvhWide, mesh: &Mesh) -> Result<(), String> {
     if nodes.iter().chain(&blocks).any(|count| *count != 1) {
         return Err("a node or block has not exactly one parent".to_owned());
     }
-    Ok(())
+    triangles_are_covered(tree, mesh, lanes)
+}
+
+/// The boxes of the leaves that list a triangle, taken together, contain its corners.
+fn triangles_are_covered(tree: &BvhWide, mesh: &Mesh, lanes: &[u32]) -> Result<(), String> {
+    let mut boxes = vec![Aabb::EMPTY; mesh.len()];
+    for (leaf, bounds) in tree.children().filter(|(child, _)| child.is_leaf()) {
+        for block in leaf.blocks() {
+            for prim in &lanes[block as usize * LANES..][..LANES] {
+                boxes[*prim as usize] = boxes[*prim as usize].union(bounds);
+            }
+        }
+    }
+    let is_bare = |prim: &u32| {
+        let corners = mesh.corners(*prim);
+        !contains(&boxes[*prim as usize], &Aabb::of_points(corners))
+    };
+    match (0..mesh.len() as u32).find(is_bare) {
+        Some(prim) => Err(format!(
+            "triangle {prim} reaches out of the leaves that list it"
+        )),
+        None => Ok(()),
+    }
 }
 
 fn contains(outer: &Aabb, inner: &Aabb) -> bool {

@@ -60,7 +60,7 @@ impl<I: Isa, C: Clip<I::X8>> Walk<I, C> {
             let (entries, exits) = self.slabs.clip(&node.boxes, visitor.t_limit());
             let met = entries.le(exits).bits();
             if met != 0 {
-                if met & (met - 1) == 0 {
+                if met.is_power_of_two() {
                     let lane = met.trailing_zeros() as usize & 7;
                     self.next = Child(node.children[lane]);
                     if V::WATCHED {

@@ -239,7 +239,7 @@ impl<M: Mailbox> Structure for Grid<M> {
         self.lists.bytes()
     }
 
-    fn validate(&self, mesh: &Mesh) -> Result<(), String> {
+    fn validate(&self, mesh: &Mesh, _: &[u32]) -> Result<(), String> {
         validate::check(&self.lattice, &self.lists, mesh)
     }
 }

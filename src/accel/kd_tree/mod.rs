@@ -221,7 +221,7 @@ impl Structure for KdTree {
         (size_of_val(self.nodes.as_slice()) + size_of_val(self.references.as_slice())) as u64
     }
 
-    fn validate(&self, mesh: &Mesh) -> Result<(), String> {
+    fn validate(&self, mesh: &Mesh, _: &[u32]) -> Result<(), String> {
         validate::validate(self, mesh)
     }
 }
@@ -236,7 +236,7 @@ mod tests {
 
     fn tree(mesh: &Mesh) -> KdTree {
         let tree = KdTree::build(mesh, &Params::defaults(ENTRY.params));
-        tree.validate(mesh).expect("valid");
+        tree.validate(mesh, &[]).expect("valid");
         tree
     }
 

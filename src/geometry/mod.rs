@@ -9,7 +9,7 @@ mod ray;
 mod surface;
 
 pub use aabb::Aabb;
-pub use glam::{DVec3, Vec3};
+pub use glam::{DVec2, DVec3, Vec3};
 pub use ray::{Hit, Ray};
 pub use surface::{SurfacePoint, unit_normal};
 

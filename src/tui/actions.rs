@@ -1,6 +1,7 @@
 //! What actions do: those that mean the same everywhere here, the others a file for each place.
 
 mod charts;
+mod inspect;
 mod overlays;
 mod plan;
 mod preview;
@@ -12,6 +13,7 @@ use super::state::{Panel, Phase, Screen, State};
 use super::update::{Effect, quit};
 use crate::lab;
 
+pub(super) use inspect::open_middle;
 pub(super) use overlays::typed;
 
 /// How many lines a page has, whatever the screen's size.
@@ -79,7 +81,8 @@ fn screen(state: &mut State, place: Place, action: Action) -> Vec<Effect> {
         _ => match place {
             Place::Plan => plan::apply(state, action),
             Place::Runs => runs::apply(state, action),
-            Place::Preview => preview::apply(state, action),
+            Place::Preview | Place::Aim => preview::apply(state, place, action),
+            Place::Inspect => inspect::apply(state, action),
             Place::Charts => charts::apply(state, action),
             Place::Reports => reports::apply(state, action),
             _ => help(state, action),

@@ -6,6 +6,7 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use super::examiner::Examiner;
 use super::pacer::Pacer;
 use super::runner::{self, Runner, lock};
 use super::signals::{self, Signal, Signals};
@@ -65,6 +66,7 @@ pub(super) fn run(
     let mut app = App {
         start,
         studio: Studio::spawn(colors, plan.memory_limit, steering.clone(), to.clone()),
+        examiner: Examiner::spawn(plan.memory_limit, steering.clone(), to.clone()),
         steering,
         to: to.clone(),
         runner: None,
@@ -86,6 +88,7 @@ pub(super) fn run(
 struct App {
     start: Instant,
     studio: Studio,
+    examiner: Examiner,
     steering: Steering,
     to: Sender<Message>,
     runner: Option<Runner>,
@@ -226,6 +229,7 @@ impl App {
             Effect::Stop => self.steering.stop(),
             Effect::Write => self.write(state),
             Effect::Render(request) => self.studio.ask(*request),
+            Effect::Inspect(request) => self.examiner.ask(*request),
             Effect::List => shelf::list(state.results.clone(), self.to.clone()),
             Effect::Read(path) => shelf::read(path, self.to.clone()),
             Effect::Quit | Effect::Suspend | Effect::Repaint => {}

@@ -24,6 +24,30 @@ pub fn figure(x: f64) -> String {
     }
 }
 
+/// A number with so many digits that it can be told from others of a range that is `span` wide: four beyond the span's
+/// first, and at most those of an `f64`.
+#[must_use]
+pub fn fine(x: f64, span: f64) -> String {
+    if !x.is_finite() || x == 0.0 {
+        return format!("{x}");
+    }
+    let power = x.abs().log10().floor();
+    let span = if span.is_finite() && span > 0.0 {
+        span.log10().floor()
+    } else {
+        power
+    };
+    let digits = (power - span + 3.0).clamp(3.0, 16.0) as i32;
+    let power = power as i32;
+    if (-4..7).contains(&power) {
+        let decimals = (digits - power).clamp(0, 20) as usize;
+        format!("{x:.decimals$}")
+    } else {
+        let decimals = digits as usize;
+        format!("{x:.decimals$e}")
+    }
+}
+
 /// Seconds as `0:07`, `2:41` or `1:02:03`.
 #[must_use]
 pub fn clock(seconds: f64) -> String {
@@ -38,6 +62,22 @@ pub fn clock(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_of_a_narrow_range_get_the_digits_that_tell_them_apart() {
+        for (x, span, text) in [
+            (2.5, 1.0, "2.500"),
+            (1234.5, 1.0, "1234.500"),
+            (10_000.25, 1e-3, "10000.250000"),
+            (0.0, 1.0, "0"),
+            (1.5e-30, 1e-30, "1.500e-30"),
+            (f64::INFINITY, 1.0, "inf"),
+            (3.0, f64::NAN, "3.000"),
+            (-250.0, 1000.0, "-250.0"),
+        ] {
+            assert_eq!(fine(x, span), text);
+        }
+    }
 
     #[test]
     fn figures_have_three_digits_and_stay_narrow() {

@@ -2,9 +2,13 @@
 
 use std::path::PathBuf;
 
+use super::app::Message;
+use super::examiner::Examiner;
+use super::keymap::Key;
 use super::runs::Runs;
 use super::state::{Phase, State, Sweep};
-use super::update::{Event, update};
+use super::steering::Steering;
+use super::update::{Effect, Event, update};
 use crate::accel::{self, StructureStats};
 use crate::kernel;
 use crate::lab::{self, Checksum, NRule, PerRay, Plan, RunConfig, RunRecord, Spread, StopReason};
@@ -156,5 +160,30 @@ pub fn complete(state: State) -> State {
         Event::BundleWritten(PathBuf::from("results/2026-11-22-teapot")),
     );
     assert_eq!(state.sweep.phase, Phase::Complete);
+    state
+}
+
+/// The inspector with a ray through the teapot, in a tree and in a grid.
+pub fn inspected() -> State {
+    inspected_in(sized(120, 40))
+}
+
+/// The same in `state`'s terminal.
+pub fn inspected_in(mut state: State) -> State {
+    let (to, from) = std::sync::mpsc::channel();
+    let examiner = Examiner::spawn(1 << 30, Steering::default(), to);
+    "teapot:4".clone_into(&mut state.picture.wish.scene);
+    let effects = update(&mut state, Event::Key(Key::char('3').event()));
+    for effect in effects {
+        if let Effect::Inspect(request) = effect {
+            examiner.ask(*request);
+        }
+    }
+    while state.inspect.examined(1).is_none() {
+        let Ok(Message::News(event)) = from.recv() else {
+            panic!("the examiner tells nothing");
+        };
+        update(&mut state, event);
+    }
     state
 }

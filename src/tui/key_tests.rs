@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use super::fixture;
-use super::keymap::{Action, KEYMAP, Key, Place};
+use super::keymap::{self, Action, Key, Place};
 use super::overlay::{Overlay, Pick, Purpose, TextField};
 use super::plan_editor::Field;
+use super::screens::details;
 use super::state::{BundleRow, ChartLine, Opened, Phase, Screen, State};
 use super::update::{Effect, Event, update};
 use crate::report::Report;
@@ -26,13 +27,21 @@ fn report() -> Report {
 /// A state in which `action` in `place` has something to act on.
 fn prepared(place: Place, action: Action) -> State {
     let mut state = fixture::sized(80, 24);
+    if place == Place::Inspect {
+        state = fixture::inspected_in(state);
+        state.inspect.focus = usize::from(action != Action::Right);
+        state.inspect.step(2);
+        state.inspect.sides[1].n = crate::lab::NRule::Fixed(8);
+        state.inspect.zoom = 1.5;
+    }
     if matches!(action, Action::Pause | Action::Stop) || place == Place::Runs {
         state = fixture::running(state);
     } else if place == Place::Charts {
         state = fixture::complete(state);
     }
     state.screen = match place {
-        Place::Preview => Screen::Preview,
+        Place::Preview | Place::Aim => Screen::Preview,
+        Place::Inspect => Screen::Inspect,
         Place::Charts => Screen::Charts,
         Place::Reports => Screen::Reports,
         Place::Help => Screen::Help,
@@ -50,6 +59,9 @@ fn prepared(place: Place, action: Action) -> State {
     }
     state.help_line = 3;
     state.picture.wish.orbit.zoom = 1.5;
+    if place == Place::Aim {
+        state.picture.cursor = Some((5, 5));
+    }
     if action == Action::NextAccel {
         state.picture.wish.step_accel(1);
     }
@@ -84,7 +96,8 @@ fn prepared(place: Place, action: Action) -> State {
         Place::Details => {
             let mut row = fixture::finished().rows[1].clone();
             row.run.warnings = vec!["a note".to_owned(); 40];
-            state.overlays.push(Overlay::Details(Box::new(row), 2));
+            let facts = Box::new(details::facts(&row));
+            state.overlays.push(Overlay::Details(facts, 2));
         }
         Place::Confirm => state.overlays.push(Overlay::Quit("why".to_owned())),
         _ => {}
@@ -94,7 +107,7 @@ fn prepared(place: Place, action: Action) -> State {
 
 #[test]
 fn every_row_of_the_keymap_has_an_effect_wherever_it_is_offered() {
-    for row in KEYMAP {
+    for row in keymap::rows() {
         for &place in row.places {
             for &key in row.keys {
                 let mut state = prepared(place, row.action);
@@ -102,13 +115,9 @@ fn every_row_of_the_keymap_has_an_effect_wherever_it_is_offered() {
                 // The picture is asked for beforehand, so that an effect is the key's own.
                 update(&mut state, Event::Clock(20.0));
                 let before = format!("{state:?}");
-                let to_itself = matches!(
-                    (place, row.action),
-                    (Place::Plan | Place::Runs, Action::Screen(1))
-                        | (Place::Preview, Action::Screen(2))
-                        | (Place::Charts, Action::Screen(3))
-                        | (Place::Help, Action::Screen(5) | Action::Help)
-                );
+                let own = Action::Screen(state.screen.number() as u8);
+                let to_itself =
+                    row.action == own || (place, row.action) == (Place::Help, Action::Help);
                 let effects = press(&mut state, key);
                 let changed = format!("{state:?}") != before;
                 assert!(
@@ -215,5 +224,5 @@ fn every_update_asks_for_the_picture_that_the_screen_shows() {
         press(&mut state, Key::char('2'))[0],
         Effect::Render(_)
     ));
-    assert!(press(&mut state, Key::char('3')).is_empty());
+    assert!(press(&mut state, Key::char('4')).is_empty());
 }

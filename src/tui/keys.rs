@@ -9,8 +9,12 @@ pub enum Place {
     Plan,
     /// Sweep, the runs.
     Runs,
-    /// Preview.
+    /// Preview, the view.
     Preview,
+    /// A cursor in the picture.
+    Aim,
+    /// Inspect.
+    Inspect,
     /// Charts.
     Charts,
     /// Reports.
@@ -29,13 +33,15 @@ pub enum Place {
 
 impl Place {
     /// All places, in the order in which help lists them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 12] = [
         Self::Plan,
         Self::Pick,
         Self::Text,
         Self::Runs,
         Self::Details,
         Self::Preview,
+        Self::Aim,
+        Self::Inspect,
         Self::Charts,
         Self::Reports,
         Self::Help,
@@ -52,6 +58,8 @@ impl Place {
             Self::Runs => "Sweep: runs",
             Self::Details => "One run",
             Self::Preview => "Preview",
+            Self::Aim => "Cursor in the picture",
+            Self::Inspect => "Inspect",
             Self::Charts => "Charts",
             Self::Reports => "Reports",
             Self::Help => "Help",

@@ -133,6 +133,31 @@ pub fn preview(state: &State, body: Rect) -> (Rect, Rect) {
     (picture, figures)
 }
 
+/// The parts of the inspect screen.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct InspectParts {
+    /// What is looked at: two rows.
+    pub head: Rect,
+    /// The accelerators; one that is not shown has no area.
+    pub sides: [Rect; 2],
+}
+
+/// Fewest columns in which two accelerators stand beside each other.
+const TWO_SIDES: u16 = 76;
+
+/// The parts of the inspect screen: the focused side alone where it is expanded or there is no room for both.
+#[must_use]
+pub fn inspect(state: &State, body: Rect) -> InspectParts {
+    let [head, rest] = Layout::vertical([Constraint::Length(2), Constraint::Fill(1)]).areas(body);
+    let mut sides = [Rect::default(); 2];
+    if state.expanded || body.width < TWO_SIDES {
+        sides[state.inspect.focus] = rest;
+    } else {
+        sides = Layout::horizontal([Constraint::Fill(1), Constraint::Fill(1)]).areas(rest);
+    }
+    InspectParts { head, sides }
+}
+
 /// Columns and rows of cells in which the screen shows the picture now; `None` where it shows none.
 #[must_use]
 pub fn picture_cells(state: &State) -> Option<(u16, u16)> {
@@ -174,8 +199,8 @@ pub fn overlay(overlay: &Overlay, body: Rect) -> Rect {
     match overlay {
         Overlay::Pick(pick) => middle(body, 78, pick.items.len() as u16 + 6),
         Overlay::Text(_) => middle(body, 76, 6),
-        Overlay::Details(row, _) => {
-            let lines = details::text(row, DETAILS as usize - 2).len();
+        Overlay::Details(facts, _) => {
+            let lines = details::text(facts, DETAILS as usize - 2).len();
             middle(body, DETAILS, lines as u16 + 2)
         }
         Overlay::Quit(_) => middle(body, 64, 7),

@@ -13,7 +13,7 @@
 //! While a sample is being timed the screen redraws on its own at most four times a second and no picture is rendered;
 //! what a key costs is told to the sweep, which takes the sample again.
 //!
-//! To add a key: a row in [`keymap::KEYMAP`]. To add a screen: a file in `screens`, a row in [`state::Screen`].
+//! To add a key: a row in the tables of [`keymap`]. To add a screen: a file in `screens`, a row in [`state::Screen`].
 
 use std::io;
 use std::path::PathBuf;
@@ -25,8 +25,11 @@ use crate::preview::ColorMode;
 
 mod actions;
 mod app;
+mod desk;
+mod examiner;
 pub mod figures;
 mod input;
+pub mod inspect;
 pub mod keymap;
 pub mod keys;
 pub mod layout;
@@ -40,6 +43,7 @@ pub mod runs;
 pub mod screens;
 mod shelf;
 mod signals;
+pub mod slice;
 pub mod state;
 mod steering;
 mod studio;

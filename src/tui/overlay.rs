@@ -2,7 +2,6 @@
 
 use super::keymap::Place;
 use super::plan_editor::{Field, Offer, PlanEditor};
-use super::runs::RunRow;
 use super::text_input::TextInput;
 
 /// What lies over a screen.
@@ -12,8 +11,8 @@ pub enum Overlay {
     Pick(Pick),
     /// A text being typed.
     Text(TextField),
-    /// Everything known of a run, and the first line shown.
-    Details(Box<RunRow>, usize),
+    /// Everything known of something, and the first line shown.
+    Details(Box<Facts>, usize),
     /// Whether to quit although a sweep runs or something is not saved; the reason.
     Quit(String),
 }
@@ -28,6 +27,31 @@ impl Overlay {
             Self::Details(..) => Place::Details,
             Self::Quit(_) => Place::Confirm,
         }
+    }
+}
+
+/// What is known of something: names and values, in the order in which they are told.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Facts {
+    /// What it is.
+    pub title: String,
+    /// Names and values.
+    pub rows: Vec<(String, String)>,
+}
+
+impl Facts {
+    /// Nothing known yet.
+    #[must_use]
+    pub fn new(title: impl Into<String>) -> Self {
+        Self {
+            title: title.into(),
+            rows: Vec::new(),
+        }
+    }
+
+    /// Adds a fact.
+    pub fn put(&mut self, name: &str, value: impl Into<String>) {
+        self.rows.push((name.to_owned(), value.into()));
     }
 }
 

@@ -97,27 +97,19 @@ impl Wish {
 
     /// Takes the accelerator `steps` further round, with its default parameters.
     pub fn step_accel(&mut self, steps: isize) {
-        let name = turned(ACCELERATORS, |a| a.name == self.accel.name, steps).name;
-        if let Ok(choice) = accel::parse(name) {
-            self.accel = choice;
-        }
+        self.accel = next_accel(&self.accel, steps);
     }
 
     /// Takes the next kernel that is no control, with its default parameters.
     pub fn step_kernel(&mut self) {
-        let methods: Vec<_> = kernel::methods().collect();
-        let name = turned(&methods, |k| k.name == self.kernel.name, 1).name;
-        if let Ok(choice) = kernel::parse(name) {
-            self.kernel = choice;
-        }
+        self.kernel = next_kernel(&self.kernel);
     }
 
     /// Takes a finer or coarser grid; stays at the ends. Returns whether it changed.
     pub fn step_n(&mut self, steps: isize) -> bool {
-        let at = N_STEPS.iter().position(|&n| n == self.n).unwrap_or(0);
-        let to = at.saturating_add_signed(steps).min(N_STEPS.len() - 1);
-        self.n = N_STEPS[to];
-        to != at
+        let before = self.n;
+        self.n = next_n(before, steps);
+        self.n != before
     }
 
     /// Takes the next channel.
@@ -144,6 +136,25 @@ impl Wish {
             self.orbit = Orbit::HOME;
         }
     }
+}
+
+/// The accelerator `steps` further round, with its default parameters.
+pub(super) fn next_accel(accel: &Choice, steps: isize) -> Choice {
+    let name = turned(ACCELERATORS, |a| a.name == accel.name, steps).name;
+    accel::parse(name).unwrap_or_else(|_| accel.clone())
+}
+
+/// The next kernel that is no control, with its default parameters.
+pub(super) fn next_kernel(kernel: &Choice) -> Choice {
+    let methods: Vec<_> = kernel::methods().collect();
+    let name = turned(&methods, |k| k.name == kernel.name, 1).name;
+    kernel::parse(name).unwrap_or_else(|_| kernel.clone())
+}
+
+/// The resolution `steps` further along [`N_STEPS`]; stays at the ends.
+pub(super) fn next_n(n: NRule, steps: isize) -> NRule {
+    let at = N_STEPS.iter().position(|&step| step == n).unwrap_or(0);
+    N_STEPS[at.saturating_add_signed(steps).min(N_STEPS.len() - 1)]
 }
 
 /// The element `steps` further round from the one that `is` finds; the first where none is found.
@@ -242,6 +253,8 @@ pub struct Picture {
     pub doing: String,
     /// Why the request that stands cannot be met.
     pub error: Option<String>,
+    /// The cell of the picture that a ray is chosen by: column and row.
+    pub cursor: Option<(u16, u16)>,
 }
 
 impl Picture {
@@ -255,6 +268,7 @@ impl Picture {
             figures: None,
             doing: String::new(),
             error: None,
+            cursor: None,
         }
     }
 

@@ -7,6 +7,7 @@ use super::fixture;
 use super::keymap::{self, Place};
 use super::overlay::{Overlay, Pick, Purpose, TextField};
 use super::plan_editor::Field;
+use super::screens::details;
 use super::state::{Panel, Screen, State};
 use super::update::{Event, update};
 use super::view::view;
@@ -47,6 +48,17 @@ fn states(columns: u16, rows: u16) -> Vec<State> {
             states.push(State { screen, ..base });
         }
     }
+    states.push(fixture::inspected_in(idle()));
+    states.push(State {
+        screen: Screen::Inspect,
+        ..fixture::running(idle())
+    });
+    let mut aiming = State {
+        screen: Screen::Preview,
+        ..idle()
+    };
+    aiming.picture.cursor = Some((300, 2));
+    states.push(aiming);
     let over = |overlay: Overlay| {
         let mut state = fixture::complete(idle());
         state.overlays.push(overlay);
@@ -58,7 +70,8 @@ fn states(columns: u16, rows: u16) -> Vec<State> {
         Purpose::Line(Field::N),
         "1..128",
     ))));
-    states.push(over(Overlay::Details(Box::new(row), 0)));
+    let facts = Box::new(details::facts(&row));
+    states.push(over(Overlay::Details(facts, 0)));
     states.push(over(Overlay::Quit("A sweep is running.".to_owned())));
     states
 }
@@ -109,12 +122,12 @@ fn the_first_key_and_the_ways_out_are_always_in_the_footer() {
 fn the_first_screen_says_what_is_there_and_what_to_press() {
     for (columns, rows) in [(80, 24), (120, 40), (200, 60)] {
         let rows = screen(&fixture::sized(columns, rows));
+        let gap = if columns == 80 { "" } else { " " };
+        for screen in Screen::ALL {
+            let name = format!("{}{gap}{}", screen.number(), screen.title());
+            assert_contains(&rows, &name);
+        }
         for text in [
-            "1 Sweep",
-            "2 Preview",
-            "3 Charts",
-            "4 Reports",
-            "5 Help",
             "Enter runs it",
             "Press Enter to run",
             "scenes",

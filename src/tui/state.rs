@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::inspect::Inspect;
 use super::keymap::{Place, Situation};
 use super::overlay::Overlay;
 use super::picture::{Picture, Wish};
@@ -21,6 +22,8 @@ pub enum Screen {
     Sweep,
     /// The scene, live.
     Preview,
+    /// One ray, step by step.
+    Inspect,
     /// Curves over n.
     Charts,
     /// Bundles on disk.
@@ -31,9 +34,10 @@ pub enum Screen {
 
 impl Screen {
     /// All screens; the key of a screen is its place here, from 1.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Sweep,
         Self::Preview,
+        Self::Inspect,
         Self::Charts,
         Self::Reports,
         Self::Help,
@@ -45,16 +49,26 @@ impl Screen {
         match self {
             Self::Sweep => "Sweep",
             Self::Preview => "Preview",
+            Self::Inspect => "Inspect",
             Self::Charts => "Charts",
             Self::Reports => "Reports",
             Self::Help => "Help",
         }
     }
 
+    /// Its key.
+    #[must_use]
+    pub fn number(self) -> usize {
+        Self::ALL
+            .iter()
+            .position(|&s| s == self)
+            .map_or(0, |at| at + 1)
+    }
+
     /// The screen `steps` further round.
     #[must_use]
     pub fn turned(self, steps: isize) -> Self {
-        let at = Self::ALL.iter().position(|&s| s == self).unwrap_or(0) as isize;
+        let at = self.number() as isize - 1;
         Self::ALL[(at + steps).rem_euclid(Self::ALL.len() as isize) as usize]
     }
 }
@@ -261,6 +275,8 @@ pub struct State {
     pub screen: Screen,
     /// The screen that was shown before help.
     pub before_help: Screen,
+    /// The screen from which the inspector was opened.
+    pub before_inspect: Screen,
     /// Columns and rows of the terminal.
     pub size: (u16, u16),
     /// Seconds since the start.
@@ -285,6 +301,8 @@ pub struct State {
     pub overlays: Vec<Overlay>,
     /// The picture.
     pub picture: Picture,
+    /// The inspect screen.
+    pub inspect: Inspect,
     /// The charts screen.
     pub charts: Charts,
     /// The reports screen.
@@ -306,6 +324,7 @@ impl State {
         Self {
             screen: Screen::Sweep,
             before_help: Screen::Sweep,
+            before_inspect: Screen::Preview,
             size,
             clock: 0.0,
             theme: Theme::new(colors),
@@ -318,6 +337,7 @@ impl State {
             frozen: false,
             held: Vec::new(),
             overlays: Vec::new(),
+            inspect: Inspect::new(),
             charts: Charts {
                 quantity: Quantity::Speed,
                 panel: 0,
@@ -341,7 +361,9 @@ impl State {
         match (self.screen, self.panel) {
             (Screen::Sweep, Panel::Plan) => Place::Plan,
             (Screen::Sweep, Panel::Runs) => Place::Runs,
+            (Screen::Preview, _) if self.picture.cursor.is_some() => Place::Aim,
             (Screen::Preview, _) => Place::Preview,
+            (Screen::Inspect, _) => Place::Inspect,
             (Screen::Charts, _) => Place::Charts,
             (Screen::Reports, _) => Place::Reports,
             (Screen::Help, _) => Place::Help,

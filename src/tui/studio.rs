@@ -3,13 +3,13 @@
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::Arc;
 use std::sync::mpsc::Sender;
-use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use super::app::Message;
+use super::desk::Desk;
 use super::picture::{Figures, PictureNews, Request, Shown, Wish};
 use super::steering::Steering;
 use super::update::Event;
@@ -33,15 +33,7 @@ const MOST_COUNTED: usize = 4096;
 /// The picture thread as others see it.
 #[derive(Debug, Clone)]
 pub(super) struct Studio {
-    shared: Arc<Shared>,
-}
-
-#[derive(Debug, Default)]
-struct Shared {
-    next: Mutex<Option<Request>>,
-    came: Condvar,
-    /// The request in work is out of date.
-    cancel: AtomicBool,
+    desk: Desk<Request>,
 }
 
 impl Studio {
@@ -52,9 +44,9 @@ impl Studio {
         steering: Steering,
         to: Sender<Message>,
     ) -> Self {
-        let shared = Arc::new(Shared::default());
+        let desk = Desk::default();
         let worker = Worker {
-            shared: Arc::clone(&shared),
+            desk: desk.clone(),
             mode,
             memory_limit,
             steering,
@@ -63,19 +55,12 @@ impl Studio {
             structure: None,
         };
         thread::spawn(move || worker.run());
-        Self { shared }
+        Self { desk }
     }
 
     /// Asks for a picture instead of the one in work.
     pub(super) fn ask(&self, request: Request) {
-        let mut next = self
-            .shared
-            .next
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
-        *next = Some(request);
-        self.shared.cancel.store(true, Ordering::Relaxed);
-        self.shared.came.notify_one();
+        self.desk.ask(request);
     }
 }
 
@@ -99,7 +84,7 @@ impl Structure {
 }
 
 struct Worker {
-    shared: Arc<Shared>,
+    desk: Desk<Request>,
     mode: ColorMode,
     memory_limit: u64,
     steering: Steering,
@@ -112,7 +97,7 @@ impl Worker {
     /// Serves requests for the rest of the program.
     fn run(mut self) {
         loop {
-            let request = self.wait();
+            let request = self.desk.wait();
             let serial = request.serial;
             let served = catch_unwind(AssertUnwindSafe(|| self.serve(&request)));
             let failed = match served {
@@ -126,23 +111,8 @@ impl Worker {
         }
     }
 
-    fn wait(&self) -> Request {
-        let shared = &self.shared;
-        let mut next = shared.next.lock().unwrap_or_else(PoisonError::into_inner);
-        loop {
-            if let Some(request) = next.take() {
-                shared.cancel.store(false, Ordering::Relaxed);
-                return request;
-            }
-            next = shared
-                .came
-                .wait(next)
-                .unwrap_or_else(PoisonError::into_inner);
-        }
-    }
-
     fn cancelled(&self) -> bool {
-        self.shared.cancel.load(Ordering::Relaxed)
+        self.desk.cancelled()
     }
 
     /// A program that is ending no longer listens.
@@ -209,7 +179,7 @@ impl Worker {
 
     /// Renders and shows one pass; whether it was not cancelled.
     fn show(&self, request: &Request, view: &View, pass: Pass) -> bool {
-        let Some(rendered) = view.pass(pass, &self.shared.cancel) else {
+        let Some(rendered) = view.pass(pass, self.desk.cancel()) else {
             return false;
         };
         let (columns, rows) = request.cells;

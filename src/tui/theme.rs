@@ -107,6 +107,17 @@ impl Theme {
         }
     }
 
+    /// Colour of lines that are only the ground for others; `Reset` without colours.
+    #[must_use]
+    pub fn faint(self) -> Color {
+        match self.mode {
+            ColorMode::True => Color::Rgb(110, 110, 110),
+            ColorMode::Ansi256 => Color::Indexed(242),
+            ColorMode::Ansi16 => Color::DarkGray,
+            ColorMode::None => Color::Reset,
+        }
+    }
+
     /// Marker of line `i` of a chart.
     #[must_use]
     pub fn marker(self, i: usize) -> &'static str {

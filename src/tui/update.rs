@@ -5,11 +5,12 @@ use std::path::PathBuf;
 use crossterm::event::KeyEvent;
 
 use super::actions;
+use super::inspect::{self, InspectNews};
 use super::keymap::{self, Key, Place};
 use super::layout;
 use super::overlay::Overlay;
 use super::picture::{PictureNews, Request};
-use super::state::{BundleRow, Opened, Phase, State};
+use super::state::{BundleRow, Opened, Phase, Screen, State};
 use crate::lab::{self, Plan};
 use crate::report::Report;
 
@@ -38,6 +39,8 @@ pub enum Event {
     Writing,
     /// The picture thread tells something.
     Picture(PictureNews),
+    /// The examiner tells something.
+    Inspect(InspectNews),
     /// The bundles in the results directory, or why there is no list.
     Listed(Result<Vec<BundleRow>, String>),
     /// A report was read, with the name of its bundle; or why not.
@@ -57,6 +60,8 @@ pub enum Effect {
     Write,
     /// Show a picture.
     Render(Box<Request>),
+    /// Follow a ray.
+    Inspect(Box<inspect::Request>),
     /// List the bundles.
     List,
     /// Read the report of a bundle.
@@ -127,6 +132,10 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
             state.picture.take(news);
             Vec::new()
         }
+        Event::Inspect(news) => {
+            state.inspect.take(news);
+            Vec::new()
+        }
         Event::Listed(result) => {
             listed(state, result);
             Vec::new()
@@ -134,8 +143,9 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
         Event::Read(result) => {
             match result {
                 Ok((name, report)) => {
+                    let number = Screen::Charts.number();
                     state.say(format!(
-                        "Opened {name}: its curves are on screen 3, Charts."
+                        "Opened {name}: its curves are on screen {number}, Charts."
                     ));
                     state.reports.opened = Some(Opened::new(name, *report));
                     state.charts.source = super::state::Source::Opened;
@@ -148,6 +158,14 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
     };
     if let Some(request) = layout::picture_cells(state).and_then(|cells| state.picture.ask(cells)) {
         effects.push(Effect::Render(Box::new(request)));
+    }
+    if state.screen == Screen::Inspect {
+        if state.inspect.subject.is_none() {
+            actions::open_middle(state);
+        }
+        if let Some(request) = state.inspect.ask() {
+            effects.push(Effect::Inspect(Box::new(request)));
+        }
     }
     effects
 }

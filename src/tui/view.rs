@@ -2,7 +2,6 @@
 
 use ratatui::Frame;
 use ratatui::layout::{Alignment, Rect};
-use ratatui::style::Style;
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, BorderType, Paragraph, Wrap};
 
@@ -39,23 +38,62 @@ fn too_small(frame: &mut Frame, area: Rect) {
 
 fn header(state: &State, frame: &mut Frame, area: Rect) {
     let theme = state.theme;
-    let mut spans = vec![Span::styled(" raylab ", theme.style(Role::Title))];
-    for (i, screen) in Screen::ALL.into_iter().enumerate() {
-        let style = if screen == state.screen {
-            theme.style(Role::Marked)
-        } else {
-            Style::new()
-        };
-        spans.push(Span::raw(" "));
-        spans.push(Span::styled(
-            format!(" {} {} ", i + 1, screen.title()),
-            style,
-        ));
-    }
-    frame.render_widget(Line::from(spans), area);
     let (text, role) = status(state);
     let status = Line::from(Span::styled(format!("{text} "), theme.style(role)));
+    let room = (area.width as usize).saturating_sub(status.width() + 1);
+    let mut names = Line::default();
+    for tabs in [Tabs::Roomy, Tabs::Tight, Tabs::Numbers] {
+        names = tabs.line(state);
+        if names.width() <= room {
+            break;
+        }
+    }
+    frame.render_widget(names, area);
     frame.render_widget(status.alignment(Alignment::Right), area);
+}
+
+/// How the screens are named in the header, by what fits.
+#[derive(Clone, Copy, PartialEq)]
+enum Tabs {
+    /// The program's name, and each with space around.
+    Roomy,
+    /// Without either.
+    Tight,
+    /// Only the one that is shown has its name.
+    Numbers,
+}
+
+impl Tabs {
+    fn line(self, state: &State) -> Line<'static> {
+        let theme = state.theme;
+        let mut spans = Vec::new();
+        if self == Self::Roomy {
+            spans.push(Span::styled(" raylab ", theme.style(Role::Title)));
+        }
+        for screen in Screen::ALL {
+            let shown = screen == state.screen;
+            let (number, title) = (screen.number(), screen.title());
+            let key = if shown { Role::Marked } else { Role::Key };
+            let name = if shown { Role::Marked } else { Role::Text };
+            match self {
+                Self::Roomy => {
+                    spans.push(Span::raw(" "));
+                    spans.push(Span::styled(format!(" {number}"), theme.style(key)));
+                    spans.push(Span::styled(format!(" {title} "), theme.style(name)));
+                }
+                Self::Numbers if !shown => {
+                    spans.push(Span::styled(format!(" {number}"), theme.style(key)));
+                }
+                Self::Tight | Self::Numbers => {
+                    let gap = if number == 1 { "" } else { " " };
+                    spans.push(Span::raw(gap));
+                    spans.push(Span::styled(number.to_string(), theme.style(key)));
+                    spans.push(Span::styled(title, theme.style(name)));
+                }
+            }
+        }
+        Line::from(spans)
+    }
 }
 
 /// What the sweep is doing, in a word or two.

@@ -94,7 +94,7 @@ fn a_plan_is_edited_run_watched_written_and_left() {
     for file in ["runs.jsonl", "report.html"] {
         assert!(bundle.join(file).exists(), "{file} is missing");
     }
-    terminal.press("4");
+    terminal.press("5");
     terminal.wait_for("teapot");
     terminal.press("\r");
     terminal.wait_for("Mrays/s");
@@ -110,9 +110,10 @@ fn every_screen_opens_and_survives_every_size() {
     terminal.wait_for("Press Enter to run");
     for (key, words) in [
         ("2", "accelerator"),
-        ("3", "Charts"),
-        ("4", "Reports"),
-        ("5", "Everywhere"),
+        ("3", "grid n=auto"),
+        ("4", "Charts"),
+        ("5", "Reports"),
+        ("6", "Everywhere"),
         ("1", "grid n"),
     ] {
         terminal.press(key);
@@ -125,6 +126,38 @@ fn every_screen_opens_and_survives_every_size() {
     }
     terminal.resize(30, 8);
     terminal.wait_until("a sentence about the size", |s| s.contains("raylab needs"));
+    terminal.press("q");
+    assert_eq!(terminal.wait_for_end(), 0);
+    terminal.assert_restored();
+}
+
+#[test]
+fn a_ray_is_chosen_in_the_picture_and_walked_in_two_accelerators() {
+    let dir = folder();
+    let mut terminal = lab(dir.path(), 120, 40);
+    terminal.press("2");
+    terminal.wait_until("a picture", |s| s.contains('▄') || s.contains('▀'));
+    terminal.press("\r");
+    terminal.wait_for("Enter inspect the ray");
+    terminal.press("h");
+    terminal.press("\r");
+    let screen = terminal.wait_until("both sides", |s| s.matches("RIGHT").count() == 2);
+    for words in [
+        "bvh · step 1 of",
+        "grid n=auto",
+        "t from 0 to inf",
+        "node 0",
+        "cell",
+    ] {
+        assert!(screen.contains(words), "'{words}' is missing:\n{screen}");
+    }
+    terminal.press("j");
+    terminal.wait_for("bvh · step 2 of");
+    terminal.press("\r");
+    terminal.wait_for("entry t");
+    terminal.press(ESC);
+    terminal.press(ESC);
+    terminal.wait_for("Enter inspect the ray");
     terminal.press("q");
     assert_eq!(terminal.wait_for_end(), 0);
     terminal.assert_restored();

@@ -49,6 +49,9 @@ fn turn(state: &mut State, steps: isize) {
                 Source::Opened => Source::Live,
             };
         }
-        ChartLine::Source => state.say("No report is open; screen 4 opens one."),
+        ChartLine::Source => {
+            let number = Screen::Reports.number();
+            state.say(format!("No report is open; screen {number} opens one."));
+        }
     }
 }

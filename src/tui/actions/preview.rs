@@ -1,6 +1,7 @@
 //! Actions on the picture.
 
-use crate::tui::keymap::Action;
+use crate::tui::keymap::{Action, Place};
+use crate::tui::layout;
 use crate::tui::picture::Orbit;
 use crate::tui::state::{Screen, State};
 use crate::tui::update::Effect;
@@ -17,7 +18,14 @@ const ZOOM_RANGE: (f32, f32) = (0.05, 20.0);
 /// Least and greatest tilt; further on, the camera stands at a pole anyway.
 const TILT: f32 = std::f32::consts::PI;
 
-pub(super) fn apply(state: &mut State, action: Action) -> Vec<Effect> {
+/// Rows that a page moves the cursor by.
+const FAR: i32 = 5;
+
+pub(super) fn apply(state: &mut State, place: Place, action: Action) -> Vec<Effect> {
+    if place == Place::Aim {
+        cursor(state, action);
+        return Vec::new();
+    }
     let wish = &mut state.picture.wish;
     let orbit = &mut wish.orbit;
     match action {
@@ -32,10 +40,44 @@ pub(super) fn apply(state: &mut State, action: Action) -> Vec<Effect> {
         Action::PreviousAccel => wish.step_accel(-1),
         Action::NextKernel => wish.step_kernel(),
         Action::Finer | Action::Coarser => step_n(state, action),
+        Action::Aim => {
+            state.picture.cursor = Some(state.picture.cursor.unwrap_or_else(|| middle(state)));
+        }
         Action::Back => state.screen = Screen::Sweep,
         _ => {}
     }
     Vec::new()
+}
+
+/// The cell in the middle of the picture.
+fn middle(state: &State) -> (u16, u16) {
+    layout::picture_cells(state).map_or((0, 0), |(columns, rows)| (columns / 2, rows / 2))
+}
+
+fn cursor(state: &mut State, action: Action) {
+    let Some((columns, rows)) = layout::picture_cells(state) else {
+        return;
+    };
+    // The picture may have become smaller.
+    let (x, y) = state.picture.cursor.unwrap_or_else(|| middle(state));
+    let (mut x, mut y) = (i32::from(x), i32::from(y));
+    match action {
+        Action::Open => return super::inspect::open_cell(state, (x as u16, y as u16)),
+        Action::Back => {
+            state.picture.cursor = None;
+            return;
+        }
+        Action::First => (x, y) = (i32::from(columns) / 2, i32::from(rows) / 2),
+        Action::Left => x -= 1,
+        Action::Right => x += 1,
+        Action::Up => y -= 1,
+        Action::Down => y += 1,
+        Action::PageUp => y -= FAR,
+        Action::PageDown => y += FAR,
+        _ => {}
+    }
+    let within = |at: i32, cells: u16| at.clamp(0, i32::from(cells) - 1) as u16;
+    state.picture.cursor = Some((within(x, columns), within(y, rows)));
 }
 
 fn step_n(state: &mut State, action: Action) {

@@ -3,6 +3,7 @@
 use super::lines;
 use crate::tui::keymap::Action;
 use crate::tui::overlay::{Overlay, Purpose, TextField};
+use crate::tui::screens::details;
 use crate::tui::state::{Screen, Source, State};
 use crate::tui::update::Effect;
 
@@ -52,8 +53,8 @@ fn opened(state: &mut State, action: Action) -> Vec<Effect> {
     match action {
         Action::Open => {
             if let Some(row) = report.table.marked_row(&report.runs.rows) {
-                let row = Box::new(row.clone());
-                state.overlays.push(Overlay::Details(row, 0));
+                let facts = Box::new(details::facts(row));
+                state.overlays.push(Overlay::Details(facts, 0));
             }
         }
         Action::Filter => {

@@ -3,6 +3,7 @@
 use super::{focus, lines};
 use crate::tui::keymap::Action;
 use crate::tui::overlay::{Overlay, Purpose, TextField};
+use crate::tui::screens::details;
 use crate::tui::state::{Panel, State};
 use crate::tui::update::Effect;
 
@@ -10,8 +11,8 @@ pub(super) fn apply(state: &mut State, action: Action) -> Vec<Effect> {
     match action {
         Action::Open => match state.table.marked_row(&state.sweep.runs.rows) {
             Some(row) => {
-                let row = Box::new(row.clone());
-                state.overlays.push(Overlay::Details(row, 0));
+                let facts = Box::new(details::facts(row));
+                state.overlays.push(Overlay::Details(facts, 0));
             }
             None => state.say("There is no run to show yet."),
         },

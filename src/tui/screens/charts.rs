@@ -9,7 +9,7 @@ use super::sweep::lines;
 use crate::report::Run;
 use crate::report::series::{PanelKey, Quantity, panels, series};
 use crate::tui::layout::is_large;
-use crate::tui::state::{ChartLine, Source, State};
+use crate::tui::state::{ChartLine, Screen, Source, State};
 use crate::tui::theme::Role;
 use crate::tui::view::{clipped, panel};
 
@@ -28,9 +28,12 @@ pub fn draw(state: &State, frame: &mut Frame, area: Rect) {
         let block = panel(state.theme, "charts", true);
         let inner = block.inner(rest);
         frame.render_widget(block, rest);
-        let text = "Nothing to chart yet. Screen 1 (press 1) runs a sweep, and its curves appear here as they grow; \
-             screen 4 (press 4) opens a report.";
-        return lines(state.theme, text, frame, inner);
+        let reports = Screen::Reports.number();
+        let text = format!(
+            "Nothing to chart yet. Screen 1 (press 1) runs a sweep, and its curves appear here as they grow; screen \
+             {reports} (press {reports}) opens a report."
+        );
+        return lines(state.theme, &text, frame, inner);
     };
     let chosen = state.charts.quantity;
     if !is_large(area) || state.expanded {

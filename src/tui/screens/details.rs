@@ -1,11 +1,11 @@
-//! Everything known of one run.
+//! Boxes that tell everything known of something, e.g. of one run.
 
 use ratatui::layout::Rect;
 
 use crate::lab::Spread;
 use crate::tui::figures::{figure, mebibytes};
 use crate::tui::layout;
-use crate::tui::overlay::Overlay;
+use crate::tui::overlay::{Facts, Overlay};
 use crate::tui::runs::{RunRow, Status};
 use crate::tui::state::State;
 use crate::tui::view::wrapped;
@@ -13,29 +13,37 @@ use crate::tui::view::wrapped;
 /// The greatest first line that still fills the box.
 #[must_use]
 pub fn last_line(state: &State) -> usize {
-    let Some(overlay @ Overlay::Details(row, _)) = state.overlays.last() else {
+    let Some(overlay @ Overlay::Details(facts, _)) = state.overlays.last() else {
         return 0;
     };
     let (width, height) = state.size;
     let body = layout::parts(Rect::new(0, 0, width, height)).body;
     let area = layout::overlay(overlay, body);
-    text(row, (area.width as usize).saturating_sub(2))
+    text(facts, (area.width as usize).saturating_sub(2))
         .len()
         .saturating_sub((area.height as usize).saturating_sub(2))
 }
 
 /// The lines of the box.
 #[must_use]
-pub fn text(row: &RunRow, width: usize) -> Vec<String> {
-    let run = &row.run;
+pub fn text(facts: &Facts, width: usize) -> Vec<String> {
     let mut lines = Vec::new();
-    let mut put = |name: &str, value: String| {
-        let mut name = name.to_owned();
-        for part in wrapped(&value, width.saturating_sub(17)) {
+    for (name, value) in &facts.rows {
+        let mut name = name.as_str();
+        for part in wrapped(value, width.saturating_sub(17)) {
             lines.push(format!(" {name:<15}{part}"));
-            name.clear();
+            name = "";
         }
-    };
+    }
+    lines
+}
+
+/// Everything known of a run.
+#[must_use]
+pub fn facts(row: &RunRow) -> Facts {
+    let run = &row.run;
+    let mut facts = Facts::new("run");
+    let mut put = |name: &str, value: String| facts.put(name, value);
     put(
         "scene",
         match run.triangles {
@@ -114,7 +122,7 @@ pub fn text(row: &RunRow, width: usize) -> Vec<String> {
         put("note", warning.clone());
     }
     put("id", run.id.clone());
-    lines
+    facts
 }
 
 fn spread(s: &Spread) -> String {

@@ -4,7 +4,7 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 
-use crate::tui::keymap::{Binding, KEYMAP, Place};
+use crate::tui::keymap::{self, Binding, EVERYWHERE, Place};
 use crate::tui::layout;
 use crate::tui::state::State;
 use crate::tui::theme::{Role, Theme};
@@ -55,18 +55,11 @@ fn text(theme: Theme, width: usize) -> Vec<Line<'static>> {
         .into_iter()
         .map(|line| Line::from(format!(" {line}")))
         .collect();
-    let everywhere = |row: &Binding| row.places.len() > 3;
-    section(
-        theme,
-        "Everywhere",
-        KEYMAP.iter().filter(|r| everywhere(r)),
-        width,
-        &mut lines,
-    );
+    section(theme, "Everywhere", EVERYWHERE.iter(), width, &mut lines);
+    let special = keymap::TABLES.iter().filter(|table| **table != EVERYWHERE);
     for place in Place::ALL {
-        let rows = KEYMAP
-            .iter()
-            .filter(|row| row.places.contains(&place) && !everywhere(row));
+        let rows = special.clone().copied().flatten();
+        let rows = rows.filter(|row| row.places.contains(&place));
         section(theme, place.title(), rows, width, &mut lines);
     }
     lines
@@ -109,7 +102,7 @@ mod tests {
             .iter()
             .map(ToString::to_string)
             .collect();
-        for row in KEYMAP {
+        for row in keymap::rows() {
             assert!(
                 text.iter()
                     .any(|line| line.contains(row.help) && line.contains(&row.keys[0].name())),

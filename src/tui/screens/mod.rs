@@ -9,9 +9,13 @@ pub mod chart;
 pub mod charts;
 pub mod details;
 pub mod help;
+pub mod inspect;
 pub mod overlays;
 pub mod preview;
 pub mod reports;
+pub mod slice;
+pub mod steps;
+mod strokes;
 pub mod sweep;
 pub mod table;
 
@@ -20,6 +24,7 @@ pub fn body(state: &State, frame: &mut Frame, area: Rect) {
     match state.screen {
         Screen::Sweep => sweep::draw(state, frame, area),
         Screen::Preview => preview::draw(state, frame, area),
+        Screen::Inspect => inspect::draw(state, frame, area),
         Screen::Charts => charts::draw(state, frame, area),
         Screen::Reports => reports::draw(state, frame, area),
         Screen::Help => help::draw(state, frame, area),

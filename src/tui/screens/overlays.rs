@@ -26,7 +26,7 @@ pub fn draw(state: &State, overlay: &Overlay, frame: &mut Frame, body: Rect) {
             }
             _ => "show only what contains: Enter is done, Esc cancels".to_owned(),
         },
-        Overlay::Details(..) => "run: Esc closes".to_owned(),
+        Overlay::Details(facts, _) => format!("{}: Esc closes", facts.title),
         Overlay::Quit(_) => "quit?".to_owned(),
     };
     frame.render_widget(Clear, area);
@@ -36,8 +36,8 @@ pub fn draw(state: &State, overlay: &Overlay, frame: &mut Frame, body: Rect) {
     match overlay {
         Overlay::Pick(list) => pick(state, list, frame, inner),
         Overlay::Text(field) => text(state, field, frame, inner),
-        Overlay::Details(row, first) => {
-            let lines = details::text(row, inner.width as usize);
+        Overlay::Details(facts, first) => {
+            let lines = details::text(facts, inner.width as usize);
             let last = lines.len().saturating_sub(inner.height as usize);
             let styled = lines.into_iter().skip((*first).min(last)).map(|line| {
                 let bad = line.contains("WRONG") || line.contains(" failed: ");

@@ -2,6 +2,7 @@
 
 use ratatui::Frame;
 use ratatui::layout::Rect;
+use ratatui::style::Style;
 use ratatui::text::{Line, Span};
 
 use crate::lab::NRule;
@@ -49,6 +50,32 @@ pub fn picture(state: &State, frame: &mut Frame, area: Rect, focused: bool) {
         return super::sweep::lines(state.theme, &text, frame, inner);
     };
     frame.render_widget(Picture::new(&shown.cells), inner);
+    if let (Some(cell), true) = (picture.cursor, focused) {
+        cursor(state, cell, frame, inner);
+    }
+}
+
+/// A cross on the cell whose ray would be inspected.
+fn cursor(state: &State, (x, y): (u16, u16), frame: &mut Frame, area: Rect) {
+    let style = state.theme.style(Role::Marked);
+    let arms = [
+        (0, 0, "┼"),
+        (-2, 0, "─"),
+        (-1, 0, "─"),
+        (1, 0, "─"),
+        (2, 0, "─"),
+    ];
+    for (dx, dy, sign) in arms.into_iter().chain([(0, -1, "│"), (0, 1, "│")]) {
+        let at = (i32::from(area.x + x) + dx, i32::from(area.y + y) + dy);
+        let inside = |at: i32, from: u16, to: u16| (i32::from(from)..i32::from(to)).contains(&at);
+        if inside(at.0, area.left(), area.right()) && inside(at.1, area.top(), area.bottom()) {
+            // The picture's own colours would make the cross invisible.
+            let style = Style::reset().patch(style);
+            frame
+                .buffer_mut()
+                .set_string(at.0 as u16, at.1 as u16, sign, style);
+        }
+    }
 }
 
 fn figures(state: &State, frame: &mut Frame, area: Rect) {

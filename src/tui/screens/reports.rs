@@ -7,7 +7,7 @@ use ratatui::text::Line;
 use super::sweep::lines;
 use super::table;
 use crate::report::Provenance;
-use crate::tui::state::{Opened, State};
+use crate::tui::state::{Opened, Screen, State};
 use crate::tui::theme::Role;
 use crate::tui::view::{clipped, panel};
 
@@ -95,7 +95,11 @@ fn report(state: &State, opened: &Opened, frame: &mut Frame, area: Rect) {
         let block = panel(
             state.theme,
             clipped(
-                &format!("{}: Esc closes, 3 shows its curves", opened.name),
+                &format!(
+                    "{}: Esc closes, {} shows its curves",
+                    opened.name,
+                    Screen::Charts.number()
+                ),
                 area.width as usize - 6,
             ),
             false,

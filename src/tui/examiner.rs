@@ -1,0 +1,418 @@
+//! The examiner thread: follows one ray through two accelerators, and cuts the scene by planes through the ray. While
+//! something is measured it works only between samples.
+
+use std::collections::BTreeSet;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::sync::mpsc::Sender;
+use std::thread;
+
+use super::app::Message;
+use super::desk::Desk;
+use super::inspect::{Aim, Examined, InspectNews, Request, Side, Source};
+use super::slice::{Frame, Plane, Segment};
+use super::steering::Steering;
+use super::studio::panic_message;
+use super::update::Event;
+use crate::accel::{self, Accelerator};
+use crate::geometry::{Ray, Vec3};
+use crate::lab::{self, Inspection, NRule, Subject};
+use crate::oracle::Oracle;
+use crate::registry::Choice;
+use crate::scene::{self, Scene};
+
+/// Structures that are kept, so that going back to one is quick.
+const KEPT: usize = 4;
+
+/// Most triangles whose corners are kept for the drawing, beside those that were hit: brute force offers all.
+const MOST_CORNERS: usize = 4096;
+
+/// Most segments of an outline: more than a large terminal has dots to show.
+const MOST_SEGMENTS: usize = 20_000;
+
+/// The examiner as others see it.
+#[derive(Debug, Clone)]
+pub(super) struct Examiner {
+    desk: Desk<Request>,
+}
+
+impl Examiner {
+    /// Starts the thread. It tells `to` what it does.
+    pub(super) fn spawn(memory_limit: u64, steering: Steering, to: Sender<Message>) -> Self {
+        let desk = Desk::default();
+        let worker = Worker {
+            desk: desk.clone(),
+            memory_limit,
+            steering,
+            to,
+            stage: None,
+            structures: Vec::new(),
+        };
+        thread::spawn(move || worker.run());
+        Self { desk }
+    }
+
+    /// Asks for a ray instead of the one in work.
+    pub(super) fn ask(&self, request: Request) {
+        self.desk.ask(request);
+    }
+}
+
+/// A scene with its oracle.
+struct Stage {
+    source: Source,
+    scene: Arc<Scene>,
+    oracle: Oracle,
+}
+
+/// A structure that stands, and for what it was built.
+struct Structure {
+    side: Side,
+    kernel: Choice,
+    n: Option<u32>,
+    accel: Box<dyn Accelerator>,
+}
+
+struct Worker {
+    desk: Desk<Request>,
+    memory_limit: u64,
+    steering: Steering,
+    to: Sender<Message>,
+    stage: Option<Stage>,
+    /// Of the stage's scene, the one used last first.
+    structures: Vec<Structure>,
+}
+
+impl Worker {
+    /// Serves requests for the rest of the program.
+    fn run(mut self) {
+        loop {
+            let request = self.desk.wait();
+            let serial = request.serial;
+            let served = catch_unwind(AssertUnwindSafe(|| self.serve(&request)));
+            let failed = match served {
+                Ok(Ok(())) => None,
+                Ok(Err(why)) => Some(why),
+                Err(panic) => Some(panic_message(panic.as_ref())),
+            };
+            if let Some(why) = failed {
+                self.tell(InspectNews::Failed { serial, why });
+            }
+        }
+    }
+
+    /// A program that is ending no longer listens.
+    fn tell(&self, news: InspectNews) {
+        let _ = self.to.send(Message::News(Event::Inspect(news)));
+    }
+
+    fn doing(&self, request: &Request, what: impl Into<String>) {
+        let (serial, what) = (request.serial, what.into());
+        self.tell(InspectNews::Doing { serial, what });
+    }
+
+    fn serve(&mut self, request: &Request) -> Result<(), String> {
+        let steering = self.steering.clone();
+        if steering.is_running() {
+            self.doing(request, "waits for a gap in the measurement");
+        }
+        let Some(_hold) = steering.hold(|| self.desk.cancelled()) else {
+            return Ok(());
+        };
+        self.enter(request)?;
+        let Some(stage) = &self.stage else {
+            return Ok(());
+        };
+        let ray = aimed(&stage.scene, &request.subject.aim);
+        if !ray.is_valid() {
+            return Err("the view has no ray there; choose another point".to_owned());
+        }
+        let outlines = Arc::new(outlines(&stage.scene, &ray));
+        for (side, wanted) in request.sides.iter().enumerate() {
+            if self.desk.cancelled() {
+                return Ok(());
+            }
+            let found = self.examine(request, wanted, &ray, &outlines);
+            self.tell(InspectNews::Side {
+                serial: request.serial,
+                side,
+                found: found.map(Arc::new),
+            });
+        }
+        Ok(())
+    }
+
+    /// Makes `self.stage` the scene that is asked for.
+    fn enter(&mut self, request: &Request) -> Result<(), String> {
+        let source = &request.subject.source;
+        if self.stage.as_ref().is_some_and(|s| s.source == *source) {
+            return Ok(());
+        }
+        self.structures.clear();
+        self.stage = None;
+        let scene = match source {
+            Source::Spec(spec) => {
+                self.doing(request, format!("loading {spec}"));
+                Arc::new(scene::load(spec).map_err(|error| error.to_string())?)
+            }
+            Source::Made(made) => Arc::clone(&made.scene),
+        };
+        self.stage = Some(Stage {
+            source: source.clone(),
+            oracle: Oracle::new(&scene.mesh),
+            scene,
+        });
+        Ok(())
+    }
+
+    /// Follows the ray through one accelerator.
+    fn examine(
+        &mut self,
+        request: &Request,
+        side: &Side,
+        ray: &Ray,
+        outlines: &Arc<[Vec<Segment>; 3]>,
+    ) -> Result<Examined, String> {
+        self.build(request, side)?;
+        let (Some(stage), Some(structure)) = (&self.stage, self.structures.first()) else {
+            return Err("there is no scene".to_owned());
+        };
+        let subject = Subject {
+            scene: stage.source.name(),
+            accel: &side.accel,
+            n: structure.n,
+            kernel: &structure.kernel,
+        };
+        let inspection = lab::inspect(&subject, structure.accel.as_ref(), &stage.oracle, ray);
+        Ok(Examined {
+            corners: corners(&stage.scene, &inspection),
+            reach: reach(&stage.scene, ray),
+            inspection,
+            ray: *ray,
+            outlines: Arc::clone(outlines),
+        })
+    }
+
+    /// Makes the first of `self.structures` the one that is asked for.
+    fn build(&mut self, request: &Request, side: &Side) -> Result<(), String> {
+        let kernel = &request.subject.kernel;
+        let serves = |s: &Structure| s.side == *side && s.kernel == *kernel;
+        if let Some(at) = self.structures.iter().position(serves) {
+            self.structures[..=at].rotate_right(1);
+            return Ok(());
+        }
+        let Some(stage) = &self.stage else {
+            return Ok(());
+        };
+        self.doing(request, format!("building {}", side.accel.name));
+        let entry = accel::entry(&side.accel.name).map_err(|error| error.to_string())?;
+        let mesh = &stage.scene.mesh;
+        let n = entry.resolution.map(|resolution| match side.n {
+            NRule::Auto => (resolution.auto)(mesh, &side.accel.params),
+            NRule::Fixed(n) => n,
+        });
+        let accel = accel::build(mesh, &side.accel, n, kernel, self.memory_limit)
+            .map_err(|error| error.to_string())?;
+        self.structures.truncate(KEPT - 1);
+        let structure = Structure {
+            side: side.clone(),
+            kernel: kernel.clone(),
+            n,
+            accel,
+        };
+        self.structures.insert(0, structure);
+        Ok(())
+    }
+}
+
+fn aimed(scene: &Scene, aim: &Aim) -> Ray {
+    match *aim {
+        Aim::Ray(ray) => ray,
+        Aim::Point {
+            orbit,
+            at: (x, y),
+            size: (width, height),
+        } => {
+            let camera = scene
+                .camera
+                .orbited(orbit.azimuth, orbit.elevation, orbit.zoom);
+            camera.ray(x, y, width, height)
+        }
+    }
+}
+
+/// Where the planes through the ray cut the scene; empty for an axis along the ray.
+fn outlines(scene: &Scene, ray: &Ray) -> [Vec<Segment>; 3] {
+    Plane::ALL.map(|plane| {
+        Frame::new(ray, plane).map_or_else(Vec::new, |frame| {
+            let all = 0..scene.mesh.len() as u32;
+            let cuts = all.flat_map(|prim| frame.cut(&scene.mesh.corners(prim)));
+            cuts.take(MOST_SEGMENTS).collect()
+        })
+    })
+}
+
+/// From where to where the scene reaches along the ray; a length of 1 for a scene without any.
+fn reach(scene: &Scene, ray: &Ray) -> [f64; 2] {
+    let plane = Plane::across(ray).first().copied();
+    let Some(frame) = plane.and_then(|plane| Frame::new(ray, plane)) else {
+        return [0.0, 1.0];
+    };
+    let corners = scene.mesh.bounds().corners();
+    let along = corners.iter().map(|corner| frame.along(*corner));
+    let (lo, hi) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| {
+        (lo.min(x), hi.max(x))
+    });
+    if scene.mesh.is_empty() || hi <= lo {
+        let middle = if lo.is_finite() { lo } else { 0.5 };
+        [middle - 0.5, middle + 0.5]
+    } else {
+        [lo, hi]
+    }
+}
+
+/// The corners of what was offered: all that was hit, and of the rest what came first.
+fn corners(scene: &Scene, inspection: &Inspection) -> Vec<(u32, [Vec3; 3])> {
+    let tests = || inspection.steps.iter().flat_map(|step| &step.tests);
+    let hit = tests().filter(|test| test.t.is_some());
+    let mut prims: BTreeSet<u32> = hit.take(MOST_CORNERS).map(|test| test.prim).collect();
+    for test in tests() {
+        if prims.len() >= MOST_CORNERS {
+            break;
+        }
+        prims.insert(test.prim);
+    }
+    prims.extend(inspection.truth.prims.iter().take(MOST_CORNERS));
+    prims
+        .into_iter()
+        .map(|prim| (prim, scene.mesh.corners(prim)))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc::{Receiver, channel};
+
+    use super::*;
+    use crate::lab::Plan;
+    use crate::tui::inspect::{Inspect, Subject};
+    use crate::tui::picture::{Orbit, Wish};
+
+    fn examiner() -> (Examiner, Receiver<Message>) {
+        let (to, from) = channel();
+        (Examiner::spawn(1 << 30, Steering::default(), to), from)
+    }
+
+    fn request(source: Source, aim: Aim) -> Request {
+        Request {
+            serial: 1,
+            subject: Subject {
+                source,
+                aim,
+                origin: String::new(),
+                kernel: Wish::first(&Plan::default()).kernel,
+            },
+            sides: Inspect::new().sides,
+        }
+    }
+
+    const MIDDLE: Aim = Aim::Point {
+        orbit: Orbit::HOME,
+        at: (10.0, 10.0),
+        size: (20, 20),
+    };
+
+    /// What is told up to the second side or the failure.
+    fn told(from: &Receiver<Message>) -> Vec<InspectNews> {
+        let mut all = Vec::new();
+        while let Ok(Message::News(Event::Inspect(news))) = from.recv() {
+            let last = matches!(
+                news,
+                InspectNews::Side { side: 1, .. } | InspectNews::Failed { .. }
+            );
+            all.push(news);
+            if last {
+                break;
+            }
+        }
+        all
+    }
+
+    fn found(news: &[InspectNews]) -> Vec<Arc<Examined>> {
+        let sides = news.iter().filter_map(|news| match news {
+            InspectNews::Side { found, .. } => Some(Arc::clone(found.as_ref().unwrap())),
+            _ => None,
+        });
+        sides.collect()
+    }
+
+    #[test]
+    fn both_accelerators_follow_the_same_ray_to_the_same_answer() {
+        let (examiner, from) = examiner();
+        examiner.ask(request(Source::Spec("teapot:4".to_owned()), MIDDLE));
+        let sides = found(&told(&from));
+        assert_eq!(sides.len(), 2);
+        assert_eq!(sides[0].ray, sides[1].ray);
+        assert_eq!(sides[0].inspection.hit, sides[1].inspection.hit);
+        assert!(sides[0].inspection.hit.is_some());
+        for side in &sides {
+            let offered = side.inspection.steps.iter().flat_map(|s| &s.tests);
+            for test in offered {
+                assert!(
+                    side.corners
+                        .binary_search_by_key(&test.prim, |c| c.0)
+                        .is_ok()
+                );
+            }
+            assert!(side.outlines.iter().all(|outline| !outline.is_empty()));
+            let hit = f64::from(side.inspection.hit.unwrap().t);
+            assert!((side.reach[0]..side.reach[1]).contains(&hit));
+        }
+    }
+
+    #[test]
+    fn a_scene_that_was_made_needs_no_name_and_one_that_is_missing_says_so() {
+        let (examiner, from) = examiner();
+        let made = super::super::inspect::Made {
+            name: "case".to_owned(),
+            scene: Arc::new(scene::load("one").unwrap()),
+        };
+        let ray = Ray::new(Vec3::new(0.1, 0.1, 5.0), Vec3::NEG_Z);
+        examiner.ask(request(Source::Made(made), Aim::Ray(ray)));
+        let sides = found(&told(&from));
+        assert_eq!((sides.len(), sides[0].ray), (2, ray));
+        examiner.ask(request(Source::Spec("missing.obj".to_owned()), MIDDLE));
+        let news = told(&from);
+        let Some(InspectNews::Failed { why, .. }) = news.last() else {
+            panic!("{news:?}");
+        };
+        assert!(why.contains("missing.obj"));
+    }
+
+    #[test]
+    fn brute_force_keeps_what_was_hit_and_no_more_than_can_be_drawn() {
+        let scene = scene::load("soup:20000").unwrap();
+        let ray = scene.camera.ray(0.5, 0.5, 1, 1);
+        let brute = accel::parse("brute").unwrap();
+        let kernel = Wish::first(&Plan::default()).kernel;
+        let built = accel::build(&scene.mesh, &brute, None, &kernel, u64::MAX).unwrap();
+        let subject = lab::Subject {
+            scene: "soup:20000",
+            accel: &brute,
+            n: None,
+            kernel: &kernel,
+        };
+        let inspection = lab::inspect(&subject, &*built, &Oracle::new(&scene.mesh), &ray);
+        let kept = corners(&scene, &inspection);
+        assert!(kept.len() <= 2 * MOST_CORNERS);
+        let hit = inspection.hit.unwrap().prim;
+        assert!(kept.iter().any(|(prim, _)| *prim == hit));
+    }
+
+    #[test]
+    fn an_empty_scene_has_a_reach_that_can_be_drawn() {
+        let scene = scene::load("empty").unwrap();
+        let [lo, hi] = reach(&scene, &Ray::new(Vec3::ZERO, Vec3::X));
+        assert!(lo < hi && (hi - lo).is_finite());
+    }
+}

@@ -5,7 +5,7 @@ use crate::geometry::{Hit, Ray};
 use crate::kernel::Kernel;
 
 use super::items::Items;
-use super::packet::{Bundle, Packet, Work};
+use super::packet::{Bundle, Packet};
 use super::query::{Packed, Query};
 use super::visit::{Uncounted, Visitor};
 
@@ -49,15 +49,17 @@ pub trait Rays<'a> {
     type Packet: Visitor;
 
     /// The visitor of a packet, the first ray of which has index `first`; handed back by [`Rays::finish_packet`]. `None`
-    /// where the kernel wants its rays one by one.
+    /// where the kernel wants its rays one by one. It
+    /// gives up, and ends the traversal, when its cost exceeds `budget`, about nanoseconds.
     fn begin_packet(
         &self,
         bundle: &Bundle<'a, <Self::Isa as Isa>::Rays>,
         first: usize,
+        budget: u32,
     ) -> Option<Self::Packet>;
 
-    /// Takes the answers of a packet; returns what it cost.
-    fn finish_packet(&mut self, packet: &Self::Packet) -> Work;
+    /// Takes the answers of a packet and returns what it cost; `None` if it gave up.
+    fn finish_packet(&mut self, packet: &Self::Packet) -> Option<u32>;
 
     /// Takes the answer of a ray.
     fn finish(&mut self, index: usize, visitor: &Self::Visitor);
@@ -108,21 +110,29 @@ impl<'a, T: Items, K: Kernel, I: Isa, A: Answer, const OCCLUSION: bool> Rays<'a>
     type Packet = Packet<'a, T, K, I, OCCLUSION>;
 
     #[inline(always)]
-    fn begin_packet(&self, bundle: &Bundle<'a, I::Rays>, first: usize) -> Option<Self::Packet> {
+    fn begin_packet(
+        &self,
+        bundle: &Bundle<'a, I::Rays>,
+        first: usize,
+        budget: u32,
+    ) -> Option<Self::Packet> {
         if bundle.suits::<K>() {
-            Some(Packet::new(self.packed, bundle, first))
+            Some(Packet::new(self.packed, bundle, first, budget))
         } else {
             None
         }
     }
 
     #[inline(always)]
-    fn finish_packet(&mut self, packet: &Self::Packet) -> Work {
+    fn finish_packet(&mut self, packet: &Self::Packet) -> Option<u32> {
+        if packet.gave_up() {
+            return None;
+        }
         let answers = &mut self.answers[packet.first..][..packet.len()];
         for (answer, best) in answers.iter_mut().zip(&packet.best) {
             *answer = A::of(*best);
         }
-        packet.work
+        Some(packet.work.cost())
     }
 
     #[inline(always)]

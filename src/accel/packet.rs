@@ -46,15 +46,25 @@ pub struct Packet<'a, T: Items, K: Kernel, I: Isa, const OCCLUSION: bool> {
     pub dirs: [Vec3; 2],
     /// What it did.
     pub work: Work,
+    /// The cost beyond which it gives up.
+    budget: u32,
 }
 
-/// The work of a packet.
+/// The work of a packet. It is counted, not timed, so that a batch is traced alike on every machine.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Work {
     /// Items that were met.
-    pub items: u32,
+    items: u32,
     /// Tests of a triangle against a vector of rays.
-    pub tests: u32,
+    tests: u32,
+}
+
+impl Work {
+    /// What it costs, about in nanoseconds of a 3.5 GHz machine: an item with the nodes on the way to it, and a test.
+    #[inline(always)]
+    pub fn cost(self) -> u32 {
+        25 * self.items + 15 * self.tests
+    }
 }
 
 /// What the rays of a packet have in common: a common origin, and an interval of directions.
@@ -153,7 +163,12 @@ impl<'a, L: Lane<1>> Bundle<'a, L> {
 impl<'a, T: Items, K: Kernel, I: Isa, const OCCLUSION: bool> Packet<'a, T, K, I, OCCLUSION> {
     /// A packet of the rays of `bundle`, the first of which has index `first` in its batch.
     #[inline(always)]
-    pub fn new(packed: &'a Packed<T, K>, bundle: &Bundle<'a, I::Rays>, first: usize) -> Self {
+    pub fn new(
+        packed: &'a Packed<T, K>,
+        bundle: &Bundle<'a, I::Rays>,
+        first: usize,
+        budget: u32,
+    ) -> Self {
         let rays = bundle.rays;
         let origin = LaneVec3::splat(rays[0].origin);
         let none = I::Rays::splat(f32::NEG_INFINITY);
@@ -174,6 +189,7 @@ impl<'a, T: Items, K: Kernel, I: Isa, const OCCLUSION: bool> Packet<'a, T, K, I,
             limit: f32::NEG_INFINITY,
             dirs: bundle.interval,
             work: Work::default(),
+            budget,
         };
         for (limit, ray) in packet.limits.iter_mut().zip(rays) {
             *limit = ray.t_max;
@@ -192,6 +208,12 @@ impl<'a, T: Items, K: Kernel, I: Isa, const OCCLUSION: bool> Packet<'a, T, K, I,
         let [a, b, c, d] = packet.vector_limits;
         packet.limit = a.max(b).max(c.max(d));
         packet
+    }
+
+    /// Whether its work exceeded the budget; then it has no answers.
+    #[inline(always)]
+    pub fn gave_up(&self) -> bool {
+        self.work.cost() > self.budget
     }
 
     /// The origin of all rays.
@@ -308,7 +330,7 @@ impl<T: Items, K: Kernel, I: Isa, const OCCLUSION: bool> Visitor
     fn test(&mut self, item: u32) -> bool {
         self.work.items += 1;
         T::test_packet(self, item);
-        OCCLUSION && self.limit == f32::NEG_INFINITY
+        self.gave_up() || (OCCLUSION && self.limit == f32::NEG_INFINITY)
     }
 
     #[inline(always)]

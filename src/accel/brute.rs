@@ -13,6 +13,7 @@ pub(super) const ENTRY: AcceleratorEntry = AcceleratorEntry {
     params: &[],
     control: false,
     resolution: None,
+    peer: None,
     build: |request| {
         let triangles = request.mesh.len() as u32;
         finish(Brute { triangles }, request)

@@ -38,6 +38,7 @@ mod items;
 mod kd_tree;
 mod packet;
 mod pages;
+mod peers;
 mod query;
 mod record;
 mod sah;
@@ -53,6 +54,7 @@ pub use brute::Brute;
 pub use bvh::Bvh;
 pub use items::{Blocks, Items, Singles};
 pub use kd_tree::KdTree;
+pub use peers::{Peer, Standing};
 pub use record::{Outcome, PlaceKind, Recording, Test, Visit};
 pub use traced::finish;
 pub use visit::{Counts, Visitor};
@@ -190,6 +192,17 @@ pub enum BuildError {
         /// The greatest resolution within the limit.
         largest_n: u32,
     },
+    /// A peer that cannot take this mesh.
+    #[error("{accel} cannot take {why}; choose another accelerator for this scene")]
+    Unfit {
+        /// The accelerator.
+        accel: &'static str,
+        /// What it cannot take.
+        why: String,
+    },
+    /// A peer whose library is not on this machine, or failed.
+    #[error("{0}")]
+    Unavailable(String),
     /// The kernel or a parameter is not known.
     #[error(transparent)]
     Choice(#[from] ChoiceError),
@@ -235,9 +248,26 @@ pub struct AcceleratorEntry {
     /// Present where the structure has a resolution n.
     #[serde(skip)]
     pub resolution: Option<Resolution>,
+    /// Present where it is another library's; `None` for raylab's own, which obey the rule of this room.
+    #[serde(skip)]
+    pub peer: Option<Peer>,
     /// Builds it.
     #[serde(skip)]
     pub build: fn(&BuildRequest) -> Result<Box<dyn Accelerator>, BuildError>,
+}
+
+impl AcceleratorEntry {
+    /// Whose it is, and whether it can be built here.
+    #[must_use]
+    pub fn standing(&self) -> Standing {
+        Standing::of(self.peer.as_ref(), &Params::defaults(self.params))
+    }
+
+    /// What decides hits with these parameters in place of the run's kernel; `None` where the kernel does.
+    #[must_use]
+    pub fn own_test(&self, params: &Params) -> Option<&'static str> {
+        (self.peer?.own_test)(params)
+    }
 }
 
 /// All accelerators, in the order in which they are listed.
@@ -247,6 +277,9 @@ pub const ACCELERATORS: &[AcceleratorEntry] = &[
     kd_tree::ENTRY,
     bvh::ENTRY,
     bvh_wide::ENTRY,
+    peers::OBVHS,
+    peers::BVH_CRATE,
+    peers::EMBREE,
 ];
 
 /// The accelerator taken where none is named: the fastest of raylab's own.

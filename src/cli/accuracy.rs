@@ -111,7 +111,7 @@ fn measure(
 
 /// The exit code: an accelerator that changes a right answer weighs most; a kernel that errs is what is measured.
 fn judge(report: &Report, outcome: &Outcome) -> Result<(), Failure> {
-    if let Some(run) = report.runs.iter().find(|run| !run.valid) {
+    if let Some(run) = report.runs.iter().find(|run| run.is_broken()) {
         return Err(Failure::Mismatch(format!(
             "{} with {} on {} ({}) gives other answers than brute force; its figures mean nothing",
             run.accel, run.kernel, run.scene, run.rays

@@ -56,7 +56,10 @@ impl From<ChoiceError> for Failure {
 
 impl From<BuildError> for Failure {
     fn from(error: BuildError) -> Self {
-        Self::Usage(error.to_string())
+        match error {
+            BuildError::Unavailable(why) => Self::Failed(why),
+            _ => Self::Usage(error.to_string()),
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! `raylab inspect`: every step of one ray, as a table or as JSON.
 
-use crate::accel::Outcome;
+use crate::accel::{self, Outcome};
 use crate::geometry::Ray;
 use crate::lab::{self, Inspection, Step, Subject};
 use crate::oracle::Oracle;
@@ -109,6 +109,9 @@ fn text(inspection: &Inspection, aim: &Aim) -> String {
         point(ray.origin),
         point(ray.dir),
     );
+    if inspection.steps.is_empty() && is_peer(&inspection.accel) {
+        text.push_str("a peer tells nothing of its steps\n\n");
+    }
     if !inspection.steps.is_empty() {
         let header = [
             "step", "kind", "place", "entry t", "exit t", "refs", "triangle", "test", "t", "bounds",
@@ -125,6 +128,13 @@ fn text(inspection: &Inspection, aim: &Aim) -> String {
     }
     text.push_str(&summary(inspection));
     text
+}
+
+/// Whether `label` is that of another library's structure.
+fn is_peer(label: &str) -> bool {
+    accel::parse(label)
+        .and_then(|choice| accel::entry(&choice.name))
+        .is_ok_and(|entry| entry.peer.is_some())
 }
 
 /// A row for the step, and one for each triangle that it offered; the first shares the step's.

@@ -31,6 +31,11 @@ fn rows(registry: Registry) -> Vec<Value> {
             .map(|a| {
                 let mut row = with_params(json!(a), a.params);
                 row["has_n"] = json!(a.resolution.is_some());
+                let standing = a.standing();
+                row["peer"] = json!(standing.peer);
+                row["available"] = json!(standing.available);
+                row["unavailable_because"] = json!(standing.unavailable_because);
+                row["own_test"] = json!(standing.own_test);
                 row
             })
             .collect(),
@@ -98,6 +103,20 @@ fn describe(row: &Value) -> String {
     let mut lines = vec![format!("{name:<22} {mark}{}", text("about"))];
     if !text("paper").is_empty() {
         lines.push(format!("{:<22}   {}", "", text("paper")));
+    }
+    if !text("own_test").is_empty() {
+        lines.push(format!(
+            "{:<22}   hits are decided by its own test, here {}, not by the kernel",
+            "",
+            text("own_test")
+        ));
+    }
+    if !text("unavailable_because").is_empty() {
+        lines.push(format!(
+            "{:<22}   not available: {}",
+            "",
+            text("unavailable_because")
+        ));
     }
     for param in row["params"].as_array().into_iter().flatten() {
         let accepts = match (&param["choices"], &param["range"]) {

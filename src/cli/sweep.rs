@@ -157,7 +157,7 @@ fn doing(record: &RunRecord) -> String {
 
 /// The exit code: wrong answers weigh more than an interruption, that more than runs that could not be made.
 fn judge(report: &Report, outcome: &Outcome) -> Result<(), Failure> {
-    let wrong: Vec<&Run> = report.runs.iter().filter(|run| !run.valid).collect();
+    let wrong: Vec<&Run> = report.runs.iter().filter(|run| run.is_broken()).collect();
     if let Some(first) = wrong.first() {
         return Err(Failure::Mismatch(format!(
             "{} of {} runs give other answers than brute force, first {} with {} on {} ({}); their figures mean nothing",
@@ -192,7 +192,9 @@ fn plan(args: &SweepArgs) -> Result<Plan, Failure> {
         list if list.is_empty() => default.iter().map(|&d| d.to_owned()).collect(),
         list => list,
     };
-    let sound = ACCELERATORS.iter().filter(|a| !a.control);
+    let sound = ACCELERATORS
+        .iter()
+        .filter(|a| !a.control && a.peer.is_none());
     let accels: Vec<&str> = sound.map(|a| a.name).collect();
     let (accels, kernels) = with_axes(
         &or(&args.accel, &accels),
@@ -228,7 +230,7 @@ impl From<LabError> for Failure {
         match error {
             LabError::Scene(error) => error.into(),
             LabError::Rays(error) => error.into(),
-            LabError::Pool { .. } => Self::Failed(error.to_string()),
+            LabError::Pool { .. } | LabError::Unavailable(_) => Self::Failed(error.to_string()),
             _ => Self::Usage(error.to_string()),
         }
     }

@@ -29,14 +29,17 @@ fn row(run: &Run) -> [String; 13] {
         run.threads.to_string(),
         significant(speed.median),
         format!("{}..{}", significant(speed.lo), significant(speed.hi)),
-        significant(run.per_ray.steps.mean),
-        significant(run.per_ray.tests.mean),
+        run.steps().map_or_else(|| "-".to_owned(), significant),
+        run.tests().map_or_else(|| "-".to_owned(), significant),
         significant(run.build_ms.median),
         significant(run.memory_bytes as f64 / 1e6),
-        match (run.valid, run.kernel_errors) {
-            (true, 0) => "yes".to_owned(),
-            (true, errors) => format!("yes, {errors} kernel errors"),
-            (false, _) => "NO".to_owned(),
+        match (run.wrong_answers, run.valid, run.kernel_errors) {
+            (Some(wrong), _, _) if wrong > 0 => {
+                format!("{wrong} of {} wrong", run.checked_rays)
+            }
+            (_, true, 0) => "yes".to_owned(),
+            (_, true, errors) => format!("yes, {errors} kernel errors"),
+            (_, false, _) => "NO".to_owned(),
         },
     ]
 }

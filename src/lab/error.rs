@@ -49,6 +49,9 @@ pub enum LabError {
         /// What the system says.
         why: String,
     },
+    /// A peer whose library is not on this machine.
+    #[error("{0}")]
+    Unavailable(String),
     /// A scene cannot be loaded.
     #[error(transparent)]
     Scene(#[from] SceneError),

@@ -135,13 +135,19 @@ pub fn inspect(
 ) -> Inspection {
     let accel_params = accel::entry(&subject.accel.name).map_or(&[][..], |e| e.params);
     let kernel_params = kernel::entry(subject.kernel).map_or(&[][..], |e| e.params);
+    let own_test = accel::entry(&subject.accel.name)
+        .ok()
+        .and_then(|entry| entry.own_test(&subject.accel.params));
     let recording = accelerator.inspect(ray);
     let truth = oracle.truth(ray);
     Inspection {
         scene: subject.scene.to_owned(),
         accel: subject.accel.label(accel_params),
         n: subject.n,
-        kernel: subject.kernel.label(kernel_params),
+        kernel: match own_test {
+            Some(test) => test.to_owned(),
+            None => subject.kernel.label(kernel_params),
+        },
         ray: InspectedRay {
             origin: ray.origin.to_array(),
             dir: ray.dir.to_array(),

@@ -2,14 +2,17 @@
 
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use crate::accel::{self, Accelerator, BuildError};
-use crate::geometry::Ray;
+use crate::geometry::{Hit, Ray};
 use crate::oracle::Oracle;
 use crate::registry::Choice;
 use crate::scene::Mesh;
 use crate::trace::RaySet;
 
 use super::Budget;
+use super::accuracy::Truths;
 use super::answers::{Answers, Findings};
 use super::subset::{checked, stratified};
 
@@ -18,6 +21,7 @@ const MOST_DIFFERENCES: usize = 256;
 
 /// The answers of brute force to some rays of a set, shared by all runs with the same scene, kernel and rays.
 pub(super) struct Judge {
+    mesh: Arc<Mesh>,
     oracle: Arc<Oracle>,
     brute: Box<dyn Accelerator>,
     set: Arc<RaySet>,
@@ -43,6 +47,7 @@ impl Judge {
         let rays: Vec<Ray> = indices.iter().map(|i| set.rays[*i]).collect();
         let answers = Answers::of(&*brute, set.query, &rays);
         Ok(Self {
+            mesh: Arc::clone(mesh),
             oracle: Arc::clone(oracle),
             brute,
             set: Arc::clone(set),
@@ -64,6 +69,27 @@ impl Judge {
             None => Answers::of(accel, self.set.query, &self.rays),
         };
         self.answers.judge(&self.oracle, &self.rays, &others)
+    }
+
+    /// On how many of the checked rays `accel`, which is bound by no rule, is wrong by the oracle: leaks, phantoms and
+    /// wrong surfaces. Its answers to the whole set are taken where it gave them.
+    pub fn wrong_answers(&self, accel: &dyn Accelerator, whole_set: Option<&Answers>) -> u64 {
+        let answers = match whole_set {
+            Some(answers) => answers.pick(&self.indices),
+            None => Answers::of(accel, self.set.query, &self.rays),
+        };
+        match answers {
+            Answers::Hits(hits) => {
+                let blocked: Vec<bool> = hits.iter().map(Hit::is_hit).collect();
+                let truths = Truths::new(&self.oracle, &self.mesh, &self.rays);
+                truths.judge(&self.rays, &hits, &blocked, 0.0).wrong()
+            }
+            Answers::Blocked(blocked) => {
+                let pairs = self.rays.par_iter().zip(&blocked);
+                let wrong = pairs.filter(|(ray, blocked)| self.oracle.occluded(ray) != **blocked);
+                wrong.count() as u64
+            }
+        }
     }
 
     /// Judges two lists of answers to `rays` where they differ, e.g. timed and counted ones: each must obey the rule.

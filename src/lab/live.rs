@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use rayon::ThreadPool;
 
-use crate::accel::{self, Accelerator, AcceleratorEntry};
+use crate::accel::{self, Accelerator, AcceleratorEntry, StructureStats};
 use crate::geometry::Ray;
 use crate::scene::Mesh;
 use crate::trace::RaySet;
@@ -74,6 +74,10 @@ impl Live {
         let (expected, counts) = all.install(|| Answers::counted(&*accel, query, of_sample));
         let whole_set = rays.is_none().then_some(&expected);
         let findings = all.install(|| at.judge.check(&*accel, whole_set));
+        let is_peer = entry.peer.is_some();
+        let wrong_answers =
+            is_peer.then(|| all.install(|| at.judge.wrong_answers(&*accel, whole_set)));
+        let structure = accel.stats();
         let record = RunRecord {
             id,
             config: config.clone(),
@@ -84,13 +88,14 @@ impl Live {
             memory_bytes: accel.memory_bytes(),
             mrays_per_s: Vec::new(),
             stopped_by: StopReason::Unfinished,
-            per_ray: PerRay::of(&counts),
-            structure: accel.stats(),
+            per_ray: (!is_peer).then(|| PerRay::of(&counts)),
+            structure: (!is_peer || structure != StructureStats::default()).then_some(structure),
             predicted: prediction(entry, config, at.mesh, n),
             checksum: expected.checksum(),
-            valid: findings.broken == 0,
+            valid: wrong_answers.unwrap_or(findings.broken) == 0,
             checked_rays: at.judge.checked_rays(),
             kernel_errors: findings.kernel_errors,
+            wrong_answers,
             warnings: warnings(at, count),
         };
         let mut live = Self {
@@ -148,7 +153,7 @@ impl Live {
     /// The complete record.
     pub fn finish(mut self, stopped_by: StopReason) -> RunRecord {
         self.record.stopped_by = stopped_by;
-        self.record.valid = self.findings.broken == 0;
+        self.record.valid = self.record.wrong_answers.unwrap_or(self.findings.broken) == 0;
         self.record.kernel_errors = self.findings.kernel_errors;
         self.record
             .warnings

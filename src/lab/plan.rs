@@ -236,6 +236,9 @@ impl Plan {
                     what: "grid resolution",
                 });
             }
+            if let Some(why) = entry.standing().unavailable_because {
+                return Err(LabError::Unavailable(why));
+            }
         }
         for n in &self.n {
             if let NRule::Fixed(n) = n {

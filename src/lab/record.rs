@@ -79,20 +79,24 @@ pub struct RunRecord {
     pub mrays_per_s: Vec<f64>,
     /// What ended the sampling.
     pub stopped_by: StopReason,
-    /// Counted work.
-    pub per_ray: PerRay,
-    /// Sizes and shape.
-    pub structure: StructureStats,
+    /// Counted work; `None` for peers, which count none.
+    pub per_ray: Option<PerRay>,
+    /// Sizes and shape; `None` where a peer tells nothing.
+    pub structure: Option<StructureStats>,
     /// What the model predicts, where there is one.
     pub predicted: Option<Prediction>,
     /// What identifies the answers.
     pub checksum: Checksum,
-    /// Whether every checked ray obeys the rule of `accel`.
+    /// Whether every checked ray obeys the rule of `accel`; of a peer, whether it answered none of them wrongly.
     pub valid: bool,
     /// Rays checked against brute force.
     pub checked_rays: u64,
     /// Of these, rays on which the kernel itself errs and the answers differ.
     pub kernel_errors: u64,
+    /// Of the checked rays, those that a peer answers wrongly by the oracle: leaks, phantoms and wrong surfaces; `None` for
+    /// raylab's own accelerators.
+    #[serde(default)]
+    pub wrong_answers: Option<u64>,
     /// What a reader of the figures should know, one sentence each.
     pub warnings: Vec<String>,
 }

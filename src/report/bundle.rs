@@ -226,13 +226,14 @@ mod tests {
             memory_bytes: 1,
             mrays_per_s: vec![1.0 / 3.0, 0.1],
             stopped_by: crate::lab::StopReason::Time,
-            per_ray: <_>::default(),
-            structure: <_>::default(),
+            per_ray: None,
+            structure: None,
             predicted: None,
             checksum: <_>::default(),
             valid: true,
             checked_rays: 1,
             kernel_errors: 0,
+            wrong_answers: None,
             warnings: Vec::new(),
         }
     }

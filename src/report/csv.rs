@@ -1,5 +1,8 @@
 //! Comma-separated values: one line a run, all figures, units in the names of the columns (RFC 4180).
 
+use crate::accel::StructureStats;
+use crate::lab::PerRay;
+
 use super::series::{accel_label, kernel_label};
 use super::{Accuracy, Report, Run};
 
@@ -15,6 +18,9 @@ const COLUMNS: &[Column] = &[
     ("n", |r| r.n.map(|n| n.to_string()).unwrap_or_default()),
     ("kernel", |r| r.kernel.clone()),
     ("kernel_with_params", kernel_label),
+    ("beside_kernel", |r| {
+        r.beside_kernel.clone().unwrap_or_default()
+    }),
     ("params", |r| {
         let pairs: Vec<String> = r.params.iter().map(|(k, v)| format!("{k}={v}")).collect();
         pairs.join(";")
@@ -33,23 +39,25 @@ const COLUMNS: &[Column] = &[
     ("build_ms_hi", |r| real(r.build_ms.hi)),
     ("build_ms_samples", |r| r.build_ms.samples.len().to_string()),
     ("memory_bytes", |r| r.memory_bytes.to_string()),
-    ("steps_mean", |r| real(r.per_ray.steps.mean)),
-    ("steps_p50", |r| r.per_ray.steps.p50.to_string()),
-    ("steps_p99", |r| r.per_ray.steps.p99.to_string()),
-    ("steps_max", |r| r.per_ray.steps.max.to_string()),
-    ("empty_steps_mean", |r| real(r.per_ray.empty_steps.mean)),
-    ("tests_mean", |r| real(r.per_ray.tests.mean)),
-    ("tests_p50", |r| r.per_ray.tests.p50.to_string()),
-    ("tests_p99", |r| r.per_ray.tests.p99.to_string()),
-    ("tests_max", |r| r.per_ray.tests.max.to_string()),
-    ("duplicate_tests_mean", |r| {
-        real(r.per_ray.duplicate_tests.mean)
+    ("steps_mean", |r| counted(r, |w| real(w.steps.mean))),
+    ("steps_p50", |r| counted(r, |w| w.steps.p50.to_string())),
+    ("steps_p99", |r| counted(r, |w| w.steps.p99.to_string())),
+    ("steps_max", |r| counted(r, |w| w.steps.max.to_string())),
+    ("empty_steps_mean", |r| {
+        counted(r, |w| real(w.empty_steps.mean))
     }),
-    ("cells", |r| r.structure.cells.to_string()),
-    ("empty_cells", |r| r.structure.empty_cells.to_string()),
-    ("references", |r| r.structure.references.to_string()),
-    ("depth", |r| r.structure.depth.to_string()),
-    ("longest_list", |r| r.structure.longest_list.to_string()),
+    ("tests_mean", |r| counted(r, |w| real(w.tests.mean))),
+    ("tests_p50", |r| counted(r, |w| w.tests.p50.to_string())),
+    ("tests_p99", |r| counted(r, |w| w.tests.p99.to_string())),
+    ("tests_max", |r| counted(r, |w| w.tests.max.to_string())),
+    ("duplicate_tests_mean", |r| {
+        counted(r, |w| real(w.duplicate_tests.mean))
+    }),
+    ("cells", |r| shape(r, |s| s.cells.to_string())),
+    ("empty_cells", |r| shape(r, |s| s.empty_cells.to_string())),
+    ("references", |r| shape(r, |s| s.references.to_string())),
+    ("depth", |r| shape(r, |s| s.depth.to_string())),
+    ("longest_list", |r| shape(r, |s| s.longest_list.to_string())),
     ("predicted_n", |r| {
         r.predicted.map(|p| p.n.to_string()).unwrap_or_default()
     }),
@@ -78,6 +86,9 @@ const COLUMNS: &[Column] = &[
     ("valid", |r| r.valid.to_string()),
     ("checked_rays", |r| r.checked_rays.to_string()),
     ("kernel_errors", |r| r.kernel_errors.to_string()),
+    ("wrong_answers", |r| {
+        r.wrong_answers.map(|n| n.to_string()).unwrap_or_default()
+    }),
     ("offset", |r| judged(r, |a| a.offset.to_string())),
     ("judged_rays", |r| judged(r, |a| a.rays.to_string())),
     ("leaks", |r| judged(r, |a| a.leaks.to_string())),
@@ -107,6 +118,16 @@ pub(super) fn table(report: &Report) -> String {
         text.push_str("\r\n");
     }
     text
+}
+
+/// A count of work; empty where none was counted.
+fn counted(run: &Run, figure: fn(&PerRay) -> String) -> String {
+    run.per_ray.as_ref().map(figure).unwrap_or_default()
+}
+
+/// A figure of the structure; empty where a peer tells nothing.
+fn shape(run: &Run, figure: fn(&StructureStats) -> String) -> String {
+    run.structure.as_ref().map(figure).unwrap_or_default()
 }
 
 /// A figure of the oracle's; empty where the run was not judged.

@@ -11,7 +11,7 @@ use thiserror::Error;
 use crate::registry::ChoiceError;
 
 use super::plot::{self, PlotFormat};
-use super::{Report, csv, html, markdown};
+use super::{Report, csv, html, markdown, peers};
 
 /// Why a report was not written.
 #[derive(Debug, Error)]
@@ -80,6 +80,11 @@ pub const FORMATS: &[FormatEntry] = &[
         name: "md",
         about: "Tables in Markdown, for a README or a pull request.",
         write: |report, dir| Ok(vec![put(dir, "report.md", markdown::page(report))?]),
+    },
+    FormatEntry {
+        name: "peers",
+        about: "Ratios against Embree, goal by goal, and every structure scene by scene, in Markdown.",
+        write: |report, dir| Ok(vec![put(dir, "peers.md", peers::page(report))?]),
     },
 ];
 

@@ -87,6 +87,7 @@ pub fn run_of(
         params: Params::default(),
         n,
         kernel: "woop".to_owned(),
+        beside_kernel: None,
         rays: rays.to_owned(),
         ray_count: 262_144,
         threads,
@@ -94,17 +95,17 @@ pub fn run_of(
         memory_bytes: model.bytes as u64,
         mrays_per_s: summary(speed, 0.05, &words),
         stopped_by: StopReason::Interval,
-        per_ray: PerRay {
+        per_ray: Some(PerRay {
             steps: spread(model.steps),
             empty_steps: spread(model.steps * 0.6),
             tests: spread(model.tests),
             duplicate_tests: spread(model.tests * 0.1),
-        },
-        structure: StructureStats {
+        }),
+        structure: Some(StructureStats {
             cells: n.map_or(1, |n| u64::from(n).pow(3)),
             dims: n.map(|n| [n; 3]),
             ..StructureStats::default()
-        },
+        }),
         predicted: n.map(|n| predicted(count, f64::from(n))),
         checksum: Checksum {
             hits: 171_023,
@@ -114,6 +115,7 @@ pub fn run_of(
         valid: true,
         checked_rays: 4_096,
         kernel_errors: 0,
+        wrong_answers: None,
         accuracy: None,
         warnings: Vec::new(),
     }

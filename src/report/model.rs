@@ -90,8 +90,11 @@ pub struct Run {
     pub params: Params,
     /// Resolution.
     pub n: Option<u32>,
-    /// Kernel.
+    /// What decided hits: the kernel, or a peer's own test.
     pub kernel: String,
+    /// Where a peer's own test decided: the kernel, with its parameters, of the runs that it was measured beside.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub beside_kernel: Option<String>,
     /// Ray set.
     pub rays: String,
     /// Rays of a sample.
@@ -107,24 +110,48 @@ pub struct Run {
     /// What ended the sampling.
     #[serde(default)]
     pub stopped_by: StopReason,
-    /// Counted work.
-    pub per_ray: PerRay,
-    /// Sizes and shape.
-    pub structure: StructureStats,
+    /// Counted work; `None` for peers, which count none.
+    pub per_ray: Option<PerRay>,
+    /// Sizes and shape; `None` where a peer tells nothing.
+    pub structure: Option<StructureStats>,
     /// What the model predicts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub predicted: Option<Prediction>,
     /// What identifies the answers.
     pub checksum: Checksum,
-    /// Whether every checked ray obeys the rule.
+    /// Whether every checked ray obeys the rule; of a peer, whether it answered none of them wrongly.
     pub valid: bool,
     /// Rays checked against brute force.
     pub checked_rays: u64,
     /// Rays on which the kernel itself errs and the answers differ.
     pub kernel_errors: u64,
+    /// Of the checked rays, those that a peer answers wrongly by the oracle; `None` for raylab's own accelerators, whose
+    /// answers must obey the rule.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wrong_answers: Option<u64>,
     /// How often the kernel was wrong by the oracle, where that was measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub accuracy: Option<Accuracy>,
     /// What a reader should know.
     pub warnings: Vec<String>,
+}
+
+impl Run {
+    /// Cells or nodes that a ray visits, mean; `None` where they were not counted.
+    #[must_use]
+    pub fn steps(&self) -> Option<f64> {
+        self.per_ray.map(|work| work.steps.mean)
+    }
+
+    /// Ray/triangle tests of a ray, mean; `None` where they were not counted.
+    #[must_use]
+    pub fn tests(&self) -> Option<f64> {
+        self.per_ray.map(|work| work.tests.mean)
+    }
+
+    /// Whether it must be taken for wrong: raylab's own accelerators promise right answers, peers do not.
+    #[must_use]
+    pub fn is_broken(&self) -> bool {
+        !self.valid && self.wrong_answers.is_none()
+    }
 }

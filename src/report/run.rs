@@ -1,7 +1,9 @@
 //! From what was measured to what is reported.
 
+use crate::accel;
+use crate::kernel;
 use crate::lab::{NRule, RunRecord};
-use crate::registry::Value;
+use crate::registry::{Params, Value};
 use crate::stats::Summary;
 
 use super::Run;
@@ -12,7 +14,12 @@ impl From<&RunRecord> for Run {
     fn from(record: &RunRecord) -> Self {
         let config = &record.config;
         let mut params = config.accel.params.clone();
-        for (key, value) in config.kernel.params.iter() {
+        let own_test = accel::entry(&config.accel.name)
+            .ok()
+            .and_then(|entry| entry.own_test(&config.accel.params));
+        // Where a peer's own test decided, the kernel's parameters decided nothing.
+        let kernel_params = own_test.is_none().then_some(&config.kernel.params);
+        for (key, value) in kernel_params.into_iter().flat_map(Params::iter) {
             // A kernel's parameter of the same name as one of the accelerator keeps both.
             let taken = params.iter().any(|(name, _)| name == key);
             let key = if taken {
@@ -32,7 +39,11 @@ impl From<&RunRecord> for Run {
             accel: config.accel.name.clone(),
             params,
             n: record.n,
-            kernel: config.kernel.name.clone(),
+            kernel: own_test.unwrap_or(&config.kernel.name).to_owned(),
+            beside_kernel: own_test.map(|_| {
+                let specs = kernel::entry(&config.kernel).map_or(&[][..], |entry| entry.params);
+                config.kernel.label(specs)
+            }),
             rays: config.rays.clone(),
             ray_count: record.ray_count,
             threads: config.threads,
@@ -47,6 +58,7 @@ impl From<&RunRecord> for Run {
             valid: record.valid,
             checked_rays: record.checked_rays,
             kernel_errors: record.kernel_errors,
+            wrong_answers: record.wrong_answers,
             accuracy: None,
             warnings: record.warnings.clone(),
         }

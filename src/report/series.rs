@@ -88,8 +88,8 @@ impl Quantity {
                 run.mrays_per_s.hi,
             ],
             Self::Build => [run.build_ms.median, run.build_ms.lo, run.build_ms.hi],
-            Self::Steps => [run.per_ray.steps.mean; 3],
-            Self::Tests => [run.per_ray.tests.mean; 3],
+            Self::Steps => [run.steps()?; 3],
+            Self::Tests => [run.tests()?; 3],
             Self::Memory => [run.memory_bytes as f64 / f64::from(1 << 20); 3],
         };
         let within = |x: f64| x.is_finite() && x >= 0.0;
@@ -114,12 +114,15 @@ pub struct PanelKey {
 }
 
 impl PanelKey {
-    /// The panel that `run` belongs to.
+    /// The panel that `run` belongs to: that of the runs which it was measured beside.
     #[must_use]
     pub fn of(run: &Run) -> Self {
         Self {
             scene: run.scene.clone(),
-            kernel: kernel_label(run),
+            kernel: run
+                .beside_kernel
+                .clone()
+                .unwrap_or_else(|| kernel_label(run)),
             rays: run.rays.clone(),
             threads: run.threads,
         }
@@ -244,10 +247,15 @@ fn put<T>(items: &mut Vec<T>, n: impl Fn(&T) -> f64, item: T) {
 }
 
 /// The accelerator of `run` as a person would have written it: with the parameters that differ from their defaults.
+/// Where a peer's own test decided hits, it is named, since the panel names another.
 #[must_use]
 pub fn accel_label(run: &Run) -> String {
     let ours = |key| kernel_key(run, key).is_none().then_some(key);
-    label(&run.accel, &run.params, accel_specs(run), ours)
+    let label = label(&run.accel, &run.params, accel_specs(run), ours);
+    match run.beside_kernel {
+        Some(_) => format!("{label} ({})", run.kernel),
+        None => label,
+    }
 }
 
 /// The kernel of `run` as a person would have written it: with the parameters that differ from their defaults.

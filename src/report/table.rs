@@ -92,10 +92,19 @@ fn row(run: &Run, top: f64) -> Vec<String> {
         share,
         value(run.build_ms.median),
         value(run.memory_bytes as f64 / f64::from(1 << 20)),
-        value(run.per_ray.steps.mean),
-        value(run.per_ray.tests.mean),
-        if run.valid { "yes" } else { "NO" }.to_owned(),
+        value(run.steps().unwrap_or(f64::NAN)),
+        value(run.tests().unwrap_or(f64::NAN)),
+        verdict(run),
     ]
+}
+
+/// Whether the answers are right; of a peer, how many of those that were checked are wrong.
+fn verdict(run: &Run) -> String {
+    match (run.wrong_answers, run.valid) {
+        (Some(wrong), _) if wrong > 0 => format!("{} wrong", number(wrong as f64)),
+        (_, true) => "yes".to_owned(),
+        (_, false) => "NO".to_owned(),
+    }
 }
 
 /// What the oracle found on one course: rates in percent with their upper 95 % bounds, one row a method and offset.
@@ -246,11 +255,19 @@ pub(super) fn warnings(report: &Report) -> Vec<(String, String)> {
     for run in &report.runs {
         let n = run.n.map(|n| format!(" · n = {n}")).unwrap_or_default();
         let who = format!("{} · {}{n}", PanelKey::of(run), accel_label(run));
-        if !run.valid {
+        if run.is_broken() {
             all.push((
                 who.clone(),
                 "some checked rays got wrong answers".to_owned(),
             ));
+        }
+        if let Some(wrong) = run.wrong_answers.filter(|&wrong| wrong > 0) {
+            let what = format!(
+                "this peer answers {} of {} checked rays wrongly by the oracle",
+                number(wrong as f64),
+                number(run.checked_rays as f64)
+            );
+            all.push((who.clone(), what));
         }
         if run.kernel_errors > 0 {
             let what = format!(

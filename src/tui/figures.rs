@@ -6,6 +6,12 @@ pub fn mebibytes(bytes: u64) -> f64 {
     bytes as f64 / f64::from(1 << 20)
 }
 
+/// As [`figure`]; a dash for what was not counted.
+#[must_use]
+pub fn counted(x: Option<f64>) -> String {
+    x.map_or_else(|| "-".to_owned(), figure)
+}
+
 /// A figure with three significant digits, so that columns stay narrow: `0.0123`, `1.23`, `12.3`, `123`, `12.3k`, `1.2M`.
 #[must_use]
 pub fn figure(x: f64) -> String {

@@ -80,18 +80,19 @@ fn record(id: &str, config: &RunConfig, speeds: &[f64]) -> Box<RunRecord> {
         memory_bytes: (cells * 100_000.0) as u64,
         mrays_per_s: speeds.to_vec(),
         stopped_by: StopReason::Interval,
-        per_ray: PerRay {
+        per_ray: Some(PerRay {
             steps: spread(cells),
             empty_steps: spread(cells / 2.0),
             tests: spread(6320.0 / cells),
             duplicate_tests: spread(0.0),
-        },
-        structure: StructureStats::default(),
+        }),
+        structure: Some(StructureStats::default()),
         predicted: None,
         checksum: Checksum::default(),
         valid: true,
         checked_rays: 4096,
         kernel_errors: 0,
+        wrong_answers: None,
         warnings: Vec::new(),
     })
 }

@@ -189,10 +189,10 @@ pub struct Figures {
     pub memory_bytes: u64,
     /// Speed of the picture's primary rays, all threads; no measurement, but an impression.
     pub mrays_per_s: f64,
-    /// Cells or nodes that a primary ray visits, mean.
-    pub steps: f64,
-    /// Tests of a primary ray, mean.
-    pub tests: f64,
+    /// Cells or nodes that a primary ray visits, mean; `None` of a peer, which counts nothing.
+    pub steps: Option<f64>,
+    /// Tests of a primary ray, mean; `None` of a peer.
+    pub tests: Option<f64>,
     /// Share of the primary rays that hit.
     pub hit_share: f64,
 }

@@ -1,7 +1,6 @@
 //! Runs as the screens see them: the same rows for a live sweep and for an opened report.
 
-use crate::accel::StructureStats;
-use crate::lab::{Checksum, Event, NRule, PerRay, RunConfig, RunRecord, StopReason};
+use crate::lab::{Checksum, Event, NRule, RunConfig, RunRecord, StopReason};
 use crate::report::Run;
 use crate::report::series::{accel_label, kernel_label};
 
@@ -139,13 +138,14 @@ fn blank(id: &str, config: &RunConfig) -> Run {
         memory_bytes: 0,
         mrays_per_s: Vec::new(),
         stopped_by: StopReason::Unfinished,
-        per_ray: PerRay::default(),
-        structure: StructureStats::default(),
+        per_ray: None,
+        structure: None,
         predicted: None,
         checksum: Checksum::default(),
         valid: true,
         checked_rays: 0,
         kernel_errors: 0,
+        wrong_answers: None,
         warnings: Vec::new(),
     })
 }

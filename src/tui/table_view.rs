@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use super::figures::{figure, mebibytes};
+use super::figures::{counted, figure, mebibytes};
 use super::runs::{RunRow, Status};
 
 /// A column of the table of runs.
@@ -102,14 +102,17 @@ impl Column {
                 Status::Building => "building".to_owned(),
                 _ => row.mrays_per_s().map_or_else(String::new, figure),
             },
-            Self::Steps => built(figure(row.run.per_ray.steps.mean)),
-            Self::Tests => built(figure(row.run.per_ray.tests.mean)),
+            Self::Steps => built(counted(row.run.steps())),
+            Self::Tests => built(counted(row.run.tests())),
             Self::Build => built(figure(row.run.build_ms.median)),
             Self::Memory => built(figure(mebibytes(row.run.memory_bytes))),
-            Self::Checked => built(match (row.run.valid, row.run.kernel_errors) {
-                (false, _) => "WRONG".to_owned(),
-                (true, 0) => "yes".to_owned(),
-                (true, errors) => format!("yes -{errors}"),
+            Self::Checked => built(match (row.run.is_broken(), row.run.wrong_answers) {
+                (true, _) => "WRONG".to_owned(),
+                (false, Some(wrong)) if wrong > 0 => format!("{wrong} wrong"),
+                (false, _) if row.run.kernel_errors > 0 => {
+                    format!("yes -{}", row.run.kernel_errors)
+                }
+                (false, _) => "yes".to_owned(),
             }),
         }
     }
@@ -131,8 +134,8 @@ impl Column {
                 Self::N => row.run.n.map(f64::from),
                 Self::Threads => Some(row.run.threads as f64),
                 Self::Speed => row.mrays_per_s().map(|x| -x),
-                Self::Steps => built.then_some(row.run.per_ray.steps.mean),
-                Self::Tests => built.then_some(row.run.per_ray.tests.mean),
+                Self::Steps => row.run.steps().filter(|_| built),
+                Self::Tests => row.run.tests().filter(|_| built),
                 Self::Build => built.then_some(row.run.build_ms.median),
                 Self::Memory => built.then_some(row.run.memory_bytes as f64),
                 Self::Checked => built.then(|| f64::from(u8::from(row.run.valid))),

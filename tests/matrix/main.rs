@@ -6,10 +6,13 @@
 //! `accelerator[:parameters][@n]/kernel/scene`. What a case checks stands in [`check`], on what in [`scenes`] and
 //! [`rays`].
 //!
+//! Peers (structures of other libraries) are tried on every scene, too, but promise nothing: see [`peers`].
+//!
 //! Rays on which a kernel errs and the answers differ are counted and printed at the end. `woop` and `moller-trumbore`
 //! on scenes of ordinary scale have none, but for rays in the plane of the triangle that brute force took.
 
 mod check;
+mod peers;
 mod rays;
 mod scenes;
 mod setting;
@@ -24,6 +27,7 @@ use raylab::kernel::{self, KERNELS};
 use raylab::registry::{Choice, ParamKind, ParamSpec, Params};
 
 use check::{Case, Tally};
+use peers::{PeerCase, Wrong};
 use setting::Setting;
 
 /// Kernels of which not even an error may differ on a scene of ordinary scale.
@@ -95,7 +99,10 @@ fn trials(tally: &Tally) -> Vec<Trial> {
     let mut trials = Vec::new();
     for scene in scenes::all() {
         let scene = Arc::new(scene);
-        for entry in ACCELERATORS.iter().filter(|a| !a.control) {
+        for entry in ACCELERATORS
+            .iter()
+            .filter(|a| !a.control && a.peer.is_none())
+        {
             for kernel in kernels() {
                 let all = EVERYWAY.contains(&kernel.name.as_str());
                 for (accel, n) in builds(entry, &scene, all) {
@@ -124,13 +131,44 @@ fn trials(tally: &Tally) -> Vec<Trial> {
     trials
 }
 
+/// Every peer with every choice of its parameters × every scene; no more is promised of them than [`peers`] checks.
+fn peer_trials(wrong: &Wrong) -> Vec<Trial> {
+    let mut trials = Vec::new();
+    for scene in scenes::all() {
+        let scene = Arc::new(scene);
+        for entry in ACCELERATORS.iter().filter(|a| a.peer.is_some()) {
+            for (accel, _) in builds(entry, &scene, true) {
+                let case = PeerCase {
+                    scene: Arc::clone(&scene),
+                    entry,
+                    accel,
+                };
+                let name = format!("peer/{}/{}", case.label(), scene.name);
+                let wrong = Arc::clone(wrong);
+                trials.push(Trial::test(name, move || {
+                    peers::check(&case, &wrong).map_err(Into::into)
+                }));
+            }
+        }
+    }
+    trials
+}
+
 fn main() -> ExitCode {
     let arguments = Arguments::from_args();
     let tally: Tally = Arc::new(Mutex::new(BTreeMap::new()));
-    let conclusion = libtest_mimic::run(&arguments, trials(&tally));
+    let wrong: Wrong = Arc::new(Mutex::new(BTreeMap::new()));
+    let mut trials = trials(&tally);
+    trials.extend(peer_trials(&wrong));
+    let conclusion = libtest_mimic::run(&arguments, trials);
     if let Ok(tally) = tally.lock() {
         for (kernel, (errors, rays)) in tally.iter() {
             eprintln!("kernel errors that differ: {kernel}: {errors} of {rays} rays");
+        }
+    }
+    if let Ok(wrong) = wrong.lock() {
+        for (peer, (mistakes, answers)) in wrong.iter() {
+            eprintln!("wrong answers of peers: {peer}: {mistakes} of {answers}");
         }
     }
     conclusion.exit_code()

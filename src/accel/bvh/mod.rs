@@ -48,6 +48,7 @@ pub(super) const ENTRY: AcceleratorEntry = AcceleratorEntry {
     ],
     control: false,
     resolution: None,
+    peer: None,
     build: |request| finish(Bvh::build(request.mesh, request.params), request),
 };
 

@@ -47,6 +47,7 @@ pub(super) const ENTRY: AcceleratorEntry = AcceleratorEntry {
     params: &[Build::PARAM, Way::PARAM],
     control: false,
     resolution: None,
+    peer: None,
     build: |request| {
         let tree = binary(request.mesh, Build::of(request.params), 1);
         let (mut wide, slots) = BvhWide::collapse(&tree, request.mesh);

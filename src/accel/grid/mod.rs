@@ -75,6 +75,7 @@ pub(super) const ENTRY: AcceleratorEntry = AcceleratorEntry {
         auto: |mesh, params| Model::new(mesh, Settings::read(params)).best().0,
         predict: |mesh, params, n| Model::new(mesh, Settings::read(params)).predict(n),
     }),
+    peer: None,
     build,
 };
 

@@ -45,6 +45,7 @@ pub(super) const ENTRY: AcceleratorEntry = AcceleratorEntry {
     }],
     control: false,
     resolution: None,
+    peer: None,
     build: |request| finish(KdTree::build(request.mesh, request.params), request),
 };
 

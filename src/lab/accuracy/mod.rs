@@ -35,7 +35,7 @@ use super::machine::Pools;
 use super::sampling::stop_reason;
 use super::{Control, LabError, Plan, RunConfig, RunRecord, StopReason};
 
-use judge::Truths;
+pub(super) use judge::Truths;
 
 /// What is judged: the runs of a plan, at each offset.
 #[derive(Debug, Clone, PartialEq)]

@@ -47,7 +47,8 @@ impl Default for StabilityPlan {
     /// Every case, kernel and accelerator, exhibits included.
     fn default() -> Self {
         let kernels = KERNELS.iter().filter_map(|k| kernel::parse(k.name).ok());
-        let accels = ACCELERATORS.iter().map(|a| a.name);
+        let own = ACCELERATORS.iter().filter(|a| a.peer.is_none());
+        let accels = own.map(|a| a.name);
         let accels = accels.filter(|name| *name != super::BRUTE);
         Self {
             cases: CASES.iter().map(|c| c.name).collect(),

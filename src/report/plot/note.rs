@@ -49,7 +49,7 @@ pub(super) fn note(
         ),
     }];
     parts.extend(legend.iter().map(|&sentence| sentence.to_owned()));
-    let wrong = runs.iter().filter(|run| !run.valid).count();
+    let wrong = runs.iter().filter(|run| run.is_broken()).count();
     if wrong > 0 {
         parts.push(format!(
             "Attention: {wrong} of {} runs gave answers that are not valid.",

@@ -3,6 +3,7 @@
 use ratatui::layout::Rect;
 
 use crate::lab::Spread;
+use crate::report::Run;
 use crate::tui::figures::{figure, mebibytes};
 use crate::tui::layout;
 use crate::tui::overlay::{Facts, Overlay};
@@ -82,19 +83,21 @@ pub fn facts(row: &RunRow) -> Facts {
             "memory",
             format!("{} MiB", figure(mebibytes(run.memory_bytes))),
         );
-        let s = &run.structure;
-        put(
-            "structure",
-            format!(
-                "{} cells or nodes, {} empty, {} references, depth {}, longest list {}",
-                s.cells, s.empty_cells, s.references, s.depth, s.longest_list
-            ),
-        );
-        let work = &run.per_ray;
-        put("cells a ray", spread(&work.steps));
-        put("  empty", spread(&work.empty_steps));
-        put("tests a ray", spread(&work.tests));
-        put("  duplicate", spread(&work.duplicate_tests));
+        if let Some(s) = &run.structure {
+            put(
+                "structure",
+                format!(
+                    "{} cells or nodes, {} empty, {} references, depth {}, longest list {}",
+                    s.cells, s.empty_cells, s.references, s.depth, s.longest_list
+                ),
+            );
+        }
+        if let Some(work) = &run.per_ray {
+            put("cells a ray", spread(&work.steps));
+            put("  empty", spread(&work.empty_steps));
+            put("tests a ray", spread(&work.tests));
+            put("  duplicate", spread(&work.duplicate_tests));
+        }
         if let Some(p) = &run.predicted {
             put(
                 "predicted",
@@ -108,14 +111,7 @@ pub fn facts(row: &RunRow) -> Facts {
                 ),
             );
         }
-        let verdict = if run.valid { "right" } else { "WRONG" };
-        put(
-            "answers",
-            format!(
-                "{verdict}: {} rays checked against brute force, {} where the kernel itself errs",
-                run.checked_rays, run.kernel_errors
-            ),
-        );
+        put("answers", verdict(run));
         put("hits", run.checksum.hits.to_string());
     }
     for warning in &run.warnings {
@@ -123,6 +119,19 @@ pub fn facts(row: &RunRow) -> Facts {
     }
     put("id", run.id.clone());
     facts
+}
+
+/// Whether the answers are right; of a peer, which may err, how many of those that were checked are wrong.
+fn verdict(run: &Run) -> String {
+    let checked = run.checked_rays;
+    if let Some(wrong) = run.wrong_answers {
+        return format!("a peer's: {wrong} of {checked} checked rays wrong by exact arithmetic");
+    }
+    let verdict = if run.valid { "right" } else { "WRONG" };
+    format!(
+        "{verdict}: {checked} rays checked against brute force, {} where the kernel itself errs",
+        run.kernel_errors
+    )
 }
 
 fn spread(s: &Spread) -> String {

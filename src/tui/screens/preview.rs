@@ -7,7 +7,7 @@ use ratatui::text::{Line, Span};
 
 use crate::lab::NRule;
 use crate::preview::{Picture, legend_bar};
-use crate::tui::figures::{figure, mebibytes};
+use crate::tui::figures::{counted, figure, mebibytes};
 use crate::tui::layout;
 use crate::tui::picture::{Figures, Wish};
 use crate::tui::plan_editor::{accel_label, kernel_label};
@@ -194,8 +194,8 @@ fn measured(wish: &Wish, figures: Option<&Figures>) -> Vec<(&'static str, String
             value(|f| format!("{} Mrays/s", figure(f.mrays_per_s))),
             "",
         ),
-        ("cells/ray", value(|f| figure(f.steps)), ""),
-        ("tests/ray", value(|f| figure(f.tests)), ""),
+        ("cells/ray", value(|f| counted(f.steps)), ""),
+        ("tests/ray", value(|f| counted(f.tests)), ""),
         (
             "rays hit",
             value(|f| format!("{:.0} %", f.hit_share * 100.0)),

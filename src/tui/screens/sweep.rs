@@ -191,8 +191,10 @@ fn live(row: &RunRow, width: usize) -> String {
         parts.push(format!("{} Mrays/s", figure(*speed)));
     }
     if row.is_built() {
-        parts.push(format!("{} cells/ray", figure(row.run.per_ray.steps.mean)));
-        parts.push(format!("{} tests/ray", figure(row.run.per_ray.tests.mean)));
+        if let Some(work) = &row.run.per_ray {
+            parts.push(format!("{} cells/ray", figure(work.steps.mean)));
+            parts.push(format!("{} tests/ray", figure(work.tests.mean)));
+        }
     } else {
         parts.push(row.status.symbol().1.to_owned());
     }

@@ -133,7 +133,7 @@ fn row_line(
     let role = match &row.status {
         Status::Failed(_) => Role::Bad,
         Status::Waiting => Role::Quiet,
-        Status::Done if !row.run.valid => Role::Bad,
+        Status::Done if row.run.is_broken() => Role::Bad,
         Status::Building | Status::Sampling | Status::Done => Role::Text,
     };
     let mut spans = vec![Span::raw(if marked { "▸" } else { " " })];

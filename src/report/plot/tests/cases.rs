@@ -1,5 +1,6 @@
 //! Reports of every shape that plots must cope with.
 
+use crate::lab::PerRay;
 use crate::report::Report;
 use crate::report::Run;
 use crate::report::fixture::{N, judged, params, report, run, run_of, summary, teapot};
@@ -134,13 +135,18 @@ fn crossing() -> Report {
     report(runs)
 }
 
+/// The counted work of a run of raylab's own.
+fn work(run: &mut Run) -> &mut PerRay {
+    run.per_ray.as_mut().expect("counted")
+}
+
 /// Everything within one percent.
 fn narrow() -> Report {
     let mut report = teapot();
     for (i, r) in report.runs.iter_mut().enumerate() {
         r.mrays_per_s = summary(10.0 + 0.01 * i as f64, 0.002, &r.id);
         r.build_ms = summary(3.0, 0.001, &r.id);
-        r.per_ray.steps.mean = 5.0 + 0.001 * i as f64;
+        work(r).steps.mean = 5.0 + 0.001 * i as f64;
     }
     report
 }
@@ -149,9 +155,9 @@ fn narrow() -> Report {
 fn zeros() -> Report {
     let mut report = teapot();
     for (i, r) in report.runs.iter_mut().enumerate() {
-        r.per_ray.tests.mean = 0.0;
+        work(r).tests.mean = 0.0;
         if i % 5 == 0 {
-            r.per_ray.steps.mean = 0.0;
+            work(r).steps.mean = 0.0;
             r.build_ms = Summary::default();
         }
     }
@@ -163,7 +169,7 @@ fn huge() -> Report {
     let mut report = teapot();
     for (i, r) in report.runs.iter_mut().enumerate() {
         r.mrays_per_s = summary(10.0_f64.powi(i as i32 - 8), 0.3, &r.id);
-        r.per_ray.tests.mean = 10.0_f64.powi(2 * i as i32);
+        work(r).tests.mean = 10.0_f64.powi(2 * i as i32);
         r.memory_bytes = u64::MAX >> (2 * i);
     }
     report
@@ -177,7 +183,7 @@ fn missing() -> Report {
             0 => r.mrays_per_s = Summary::default(),
             1 => r.build_ms.median = f64::NAN,
             2 => r.mrays_per_s.lo = f64::NEG_INFINITY,
-            _ => r.per_ray.steps.mean = f64::INFINITY,
+            _ => work(r).steps.mean = f64::INFINITY,
         }
         r.predicted = None;
         r.valid = i != 3;

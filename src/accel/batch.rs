@@ -45,6 +45,9 @@ pub trait Rays<'a> {
     /// Asks the memory for an item that will be tested soon.
     fn prefetch(&self, item: u32);
 
+    /// Whether rays of one origin may go together. Asked before anything that packets need, so that nothing of it is
+    /// compiled where they may not.
+    const PACKETS: bool;
     /// What a traversal of a packet reports to.
     type Packet: Visitor;
 
@@ -107,6 +110,8 @@ impl<'a, T: Items, K: Kernel, I: Isa, A: Answer, const OCCLUSION: bool> Rays<'a>
         prefetch(place, size_of::<T::Item<K>>().div_ceil(64));
     }
 
+    // Rays that ask only whether they are blocked rarely start at one point.
+    const PACKETS: bool = K::PACKETS && !OCCLUSION;
     type Packet = Packet<'a, T, K, I, OCCLUSION>;
 
     #[inline(always)]

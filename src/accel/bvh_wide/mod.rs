@@ -167,22 +167,6 @@ impl Node {
     }
 }
 
-/// Traces one ray after another.
-#[inline(always)]
-fn single<'a, R: Rays<'a>>(
-    tree: &BvhWide,
-    batch: &mut R,
-    range: Range<usize>,
-    stacks: &mut Stacks,
-) {
-    for index in range {
-        let mut visitor = batch.begin(index);
-        let ray = batch.rays()[index];
-        tree.traverse::<R::Isa, _>(&ray, stacks, &mut visitor);
-        batch.finish(index, &visitor);
-    }
-}
-
 impl Structure for BvhWide {
     type Items = Blocks;
     type Scratch = Stacks;
@@ -203,9 +187,8 @@ impl Structure for BvhWide {
     #[inline(always)]
     fn trace<'a, R: Rays<'a>>(&self, batch: &mut R, stacks: &mut Stacks) {
         match self.way.unwrap_or_else(|| way::choose(self, batch.rays())) {
-            Way::Single => single(self, batch, 0..batch.rays().len(), stacks),
             Way::Interleaved => interleaved::trace(self, batch, stacks),
-            Way::Packets => packets::trace(self, batch, stacks),
+            way => packets::trace(self, batch, stacks, way == Way::Packets),
         }
     }
 

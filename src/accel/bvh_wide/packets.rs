@@ -7,11 +7,12 @@
 use std::ops::Range;
 
 use super::super::Rays;
+use super::super::Structure;
 use super::super::packet::{Bundle, MOST, VECTOR};
 use super::super::slab::PacketSlabs;
+use super::BvhWide;
 use super::stack::Stacks;
 use super::walk::Walk;
-use super::{BvhWide, single};
 use crate::geometry::lanes::Isa;
 
 /// Cost of a ray in a packet of 64, about in nanoseconds, above which packets of 16 are better.
@@ -26,30 +27,45 @@ const CHEAP: u32 = 15;
 /// Rays that go alone until a packet is tried again.
 const ALONE: usize = 256;
 
-/// Traces all rays of `batch`.
+/// Traces all rays of `batch`, as packets where `packets` asks for them.
 #[inline(always)]
-pub(super) fn trace<'a, R: Rays<'a>>(tree: &BvhWide, batch: &mut R, stacks: &mut Stacks) {
+pub(super) fn trace<'a, R: Rays<'a>>(
+    tree: &BvhWide,
+    batch: &mut R,
+    stacks: &mut Stacks,
+    packets: bool,
+) {
     let count = batch.rays().len();
     let mut start = 0;
     let mut size = VECTOR;
     while start < count {
-        let range = start..count.min(start + size);
-        let rays = range.len() as u32;
-        start = range.end;
-        match together(tree, batch, range.clone(), stacks).map(|cost| cost / rays) {
-            Some(cost) if cost > TOO_WIDE => size = VECTOR,
-            // Whole squares only.
-            Some(cost) if cost < CHEAP && start.is_multiple_of(MOST) => size = MOST,
-            Some(_) => {}
-            // Quarters may be of one mind.
-            None if size > VECTOR => {
-                start = range.start;
+        let mut alone = start..count;
+        if R::PACKETS && packets {
+            let range = start..count.min(start + size);
+            let rays = range.len() as u32;
+            if let Some(cost) = together(tree, batch, range.clone(), stacks) {
+                start = range.end;
+                if cost > TOO_WIDE * rays {
+                    size = VECTOR;
+                } else if cost < CHEAP * rays && start.is_multiple_of(MOST) {
+                    // Whole squares only.
+                    size = MOST;
+                }
+                continue;
+            }
+            if size > VECTOR {
+                // Quarters may be of one mind.
                 size = VECTOR;
+                continue;
             }
-            None => {
-                start = count.min(range.start + ALONE);
-                single(tree, batch, range.start..start, stacks);
-            }
+            alone.end = count.min(start + ALONE);
+        }
+        start = alone.end;
+        for index in alone {
+            let mut visitor = batch.begin(index);
+            let ray = batch.rays()[index];
+            tree.traverse::<R::Isa, _>(&ray, stacks, &mut visitor);
+            batch.finish(index, &visitor);
         }
     }
 }

@@ -25,7 +25,7 @@ use std::fmt::{self, Display};
 
 use super::{F32x8, Lane, Pair};
 
-#[cfg(target_arch = "x86_64")]
+#[cfg(all(target_arch = "x86_64", not(debug_assertions)))]
 use super::{avx2, avx512};
 
 /// What is compiled once for each instruction set.
@@ -62,12 +62,12 @@ pub trait Isa: Copy + Send + Sync + 'static {
 pub struct Portable;
 
 /// AVX2 and FMA.
-#[cfg(target_arch = "x86_64")]
+#[cfg(all(target_arch = "x86_64", not(debug_assertions)))]
 #[derive(Debug, Clone, Copy)]
 pub struct Avx2;
 
 /// AVX-512 F, VL, BW and DQ.
-#[cfg(target_arch = "x86_64")]
+#[cfg(all(target_arch = "x86_64", not(debug_assertions)))]
 #[derive(Debug, Clone, Copy)]
 pub struct Avx512;
 
@@ -108,7 +108,7 @@ impl Isa for Portable {
     }
 }
 
-#[cfg(target_arch = "x86_64")]
+#[cfg(all(target_arch = "x86_64", not(debug_assertions)))]
 impl Isa for Avx2 {
     type X8 = avx2::F32x8;
     type Rays = Pair<avx2::F32x8>;
@@ -125,7 +125,7 @@ impl Isa for Avx2 {
     }
 }
 
-#[cfg(target_arch = "x86_64")]
+#[cfg(all(target_arch = "x86_64", not(debug_assertions)))]
 impl Isa for Avx512 {
     type X8 = avx512::F32x8;
     type Rays = avx512::F32x16;
@@ -164,10 +164,11 @@ impl InstructionSet {
         available.unwrap_or(Self::Portable)
     }
 
-    /// Whether this processor has it.
+    /// Whether this processor has it and this build uses it: unoptimised ones use none, since they are built in order to be
+    /// built soon, and compile everything once instead of once a set.
     #[must_use]
     pub fn is_available(self) -> bool {
-        #[cfg(target_arch = "x86_64")]
+        #[cfg(all(target_arch = "x86_64", not(debug_assertions)))]
         {
             let avx2 = || {
                 is_x86_feature_detected!("avx2")
@@ -188,7 +189,7 @@ impl InstructionSet {
                 }
             }
         }
-        #[cfg(not(target_arch = "x86_64"))]
+        #[cfg(not(all(target_arch = "x86_64", not(debug_assertions))))]
         {
             self == Self::Portable
         }
@@ -197,7 +198,7 @@ impl InstructionSet {
     /// Runs `task` with the lanes of this set, or of [`Portable`] where the processor lacks it.
     #[inline]
     pub fn run<T: Task>(self, task: T) -> T::Out {
-        #[cfg(target_arch = "x86_64")]
+        #[cfg(all(target_arch = "x86_64", not(debug_assertions)))]
         if self != Self::Portable && self.is_available() {
             // SAFETY: the processor was just asked.
             return match self {
@@ -226,14 +227,14 @@ impl Display for InstructionSet {
 }
 
 /// Compiled for AVX2. Only [`Lane::mul_add`] uses fused multiply-add: the compiler fuses nothing that is written apart.
-#[cfg(target_arch = "x86_64")]
+#[cfg(all(target_arch = "x86_64", not(debug_assertions)))]
 #[target_feature(enable = "avx2,fma,bmi1")]
 fn with_avx2<T: Task>(task: T) -> T::Out {
     task.run::<Avx2>()
 }
 
 /// Compiled for AVX-512.
-#[cfg(target_arch = "x86_64")]
+#[cfg(all(target_arch = "x86_64", not(debug_assertions)))]
 #[target_feature(enable = "avx2,fma,bmi1,bmi2,popcnt,avx512f,avx512vl,avx512bw,avx512dq")]
 fn with_avx512<T: Task>(task: T) -> T::Out {
     task.run::<Avx512>()

@@ -82,6 +82,8 @@ impl Grid {
 pub(super) struct Split {
     pub axis: usize,
     pub bin: usize,
+    /// Half areas times references of both sides, in units of [`Bounds::scale`] of the node.
+    pub cost: f32,
     /// References of the first side.
     pub count: usize,
     /// The boxes of both sides.
@@ -189,6 +191,7 @@ impl Histogram {
             Split {
                 axis,
                 bin,
+                cost,
                 count: self.below(axis, bin),
                 sides: [side(first), side(second)],
             }

@@ -5,7 +5,7 @@ use crate::registry::{ParamKind, ParamSpec, Params};
 use crate::scene::Mesh;
 
 use super::super::slab::{Corners, corners};
-use super::{binned, leaves};
+use super::{binned, leaves, spatial};
 
 /// A box and what is in it: two children at `first` and `first + 1`, or `count` references from `first` on.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -102,6 +102,8 @@ impl BinaryTree {
 pub(in crate::accel) enum Build {
     /// Top down, split by histograms of centroids.
     Binned,
+    /// As [`Build::Binned`], and planes cut triangles where boxes would overlap.
+    Sbvh,
 }
 
 impl Build {
@@ -109,13 +111,16 @@ impl Build {
     pub const PARAM: ParamSpec = ParamSpec {
         name: "build",
         about: "How the tree is built.",
-        kind: ParamKind::Choice(&["binned"]),
+        kind: ParamKind::Choice(&["binned", "sbvh"]),
         default: "binned",
     };
 
     /// The build that `params` names.
-    pub fn of(_params: &Params) -> Self {
-        Self::Binned
+    pub fn of(params: &Params) -> Self {
+        match params.text("build") {
+            "sbvh" => Self::Sbvh,
+            _ => Self::Binned,
+        }
     }
 }
 
@@ -126,6 +131,7 @@ impl Build {
 pub(in crate::accel) fn binary(mesh: &Mesh, build: Build, most: usize) -> BinaryTree {
     let tree = match build {
         Build::Binned => binned::build(binned::references(mesh)),
+        Build::Sbvh => spatial::build(mesh),
     };
     if most > 1 {
         leaves::merged(&tree, most)

@@ -1,0 +1,277 @@
+//! The references of a node and how they are divided between its children.
+//!
+//! ```text
+//!   references of a node          spare room of the same size
+//!   | . . . . . . . . . . |  -->  | first side . . > < . second side |     then the two change roles
+//! ```
+//!
+//! The first side is moved to the begin of the spare room and the second to its end, without a branch that could be
+//! mispredicted. Where room is left between them, for references that spatial splits add, both sides get a share.
+
+use std::ops::Range;
+
+use glam::{BVec4A, Vec4};
+use rayon::prelude::*;
+
+use super::bins::{Grid, Histogram, Split};
+use super::reference::{Bounds, Extent, Reference};
+
+/// Above this many references, threads share the work on a single node, in chunks of [`CHUNK`].
+const SHARED: usize = 4 * CHUNK;
+
+/// References of a chunk: large beside a histogram, small beside a mesh.
+pub(super) const CHUNK: usize = 16_384;
+
+/// Runs `work` on `references`, chunk by chunk where they are many, and joins what comes back; `join` must not depend on
+/// the order.
+pub(super) fn chunked<T: Send>(
+    references: &[Reference],
+    work: impl Fn(&[Reference]) -> T + Sync,
+    join: impl Fn(T, T) -> T + Sync + Send,
+) -> T {
+    if references.len() >= SHARED {
+        let joined = references.par_chunks(CHUNK).map(&work).reduce_with(join);
+        if let Some(joined) = joined {
+            return joined;
+        }
+    }
+    work(references)
+}
+
+/// The boxes of `references` and of their centroids.
+pub(super) fn extent(references: &[Reference]) -> Extent {
+    let serial = |chunk: &[Reference]| chunk.iter().fold(Extent::EMPTY, Extent::grown);
+    chunked(references, serial, Extent::union)
+}
+
+/// The references of a node in their room, and as much room beside it.
+pub(super) struct Task<'a> {
+    references: &'a mut [Reference],
+    spare: &'a mut [Reference],
+    filled: Range<usize>,
+    pub extent: Extent,
+}
+
+/// An object split, and the histograms of the chunks where threads share the node.
+pub(super) struct Choice {
+    pub split: Split,
+    grid: Grid,
+    parts: Vec<Histogram>,
+}
+
+impl<'a> Task<'a> {
+    /// The first `count` of `references`; the rest is room.
+    pub fn new(references: &'a mut [Reference], spare: &'a mut [Reference], count: usize) -> Self {
+        Self {
+            extent: extent(&references[..count]),
+            references,
+            spare,
+            filled: 0..count,
+        }
+    }
+
+    pub fn references(&self) -> &[Reference] {
+        &self.references[self.filled.clone()]
+    }
+
+    pub fn len(&self) -> usize {
+        self.filled.len()
+    }
+
+    /// How many references may be added.
+    pub fn room(&self) -> usize {
+        self.references.len() - self.len()
+    }
+
+    /// The best object split; `None` where no bins separate the centroids.
+    pub fn choose(&self) -> Option<Choice> {
+        let references = self.references();
+        let grid = Grid::new(&self.extent.centroids, references.len());
+        let mut parts = Vec::new();
+        let histogram = if references.len() < SHARED {
+            Histogram::of(references, &grid)
+        } else {
+            references
+                .par_chunks(CHUNK)
+                .map(|chunk| Histogram::of(chunk, &grid))
+                .collect_into_vec(&mut parts);
+            let mut joined = Histogram::EMPTY;
+            for part in &parts {
+                joined.join(part);
+            }
+            joined
+        };
+        let split = histogram.best(&grid, &self.extent.bounds)?;
+        Some(Choice { split, grid, parts })
+    }
+
+    /// Both sides of an object split.
+    pub fn divided(self, choice: &Choice) -> [Self; 2] {
+        let Choice { split, grid, parts } = choice;
+        let (references, to) = (&self.references[self.filled.clone()], &mut *self.spare);
+        let centroids = match (parts.as_slice(), split.axis) {
+            ([], 0) => partition::<0>(references, to, grid, split.bin),
+            ([], 1) => partition::<1>(references, to, grid, split.bin),
+            ([], _) => partition::<2>(references, to, grid, split.bin),
+            (parts, _) => partition_shared(references, to, grid, split, parts),
+        };
+        let extents = [0, 1].map(|side| Extent {
+            bounds: split.sides[side],
+            centroids: centroids[side],
+        });
+        let counts = [split.count, self.len() - split.count];
+        self.moved(counts, extents)
+    }
+
+    /// The references and the spare room, for a division that moves the first side to the begin of the spare room and the
+    /// second to its end, and then calls [`Task::moved`].
+    pub fn parts(&mut self) -> (&[Reference], &mut [Reference]) {
+        (&self.references[self.filled.clone()], self.spare)
+    }
+
+    /// The two sides after they were moved to the begin and to the end of the spare room.
+    pub fn moved(self, [a, b]: [usize; 2], extents: [Extent; 2]) -> [Self; 2] {
+        let room = self.spare.len() - a - b;
+        let mut middle = a;
+        if room > 0 {
+            // What has large boxes is where spatial splits can save most.
+            let area = |references: &[Reference]| -> f64 {
+                references
+                    .iter()
+                    .map(|r| f64::from(r.bounds().half_area(self.extent.bounds.scale())))
+                    .sum()
+            };
+            let [first, second] = [&self.spare[..a], &self.spare[a + room..]].map(area);
+            let share = first / (first + second);
+            // A share that is no number gives zero.
+            middle += ((room as f64 * share) as usize).min(room);
+        }
+        let filled = [0..a, a + room - middle..self.spare.len() - middle];
+        Self::pair([self.spare, self.references], middle, filled, extents)
+    }
+
+    /// Halves by index.
+    pub fn halved(self) -> [Self; 2] {
+        let middle = self.filled.start + self.len() / 2;
+        let sides = [self.filled.start..middle, middle..self.filled.end];
+        let extents = sides.clone().map(|side| extent(&self.references[side]));
+        let filled = [self.filled.start..middle, 0..self.filled.end - middle];
+        Self::pair([self.references, self.spare], middle, filled, extents)
+    }
+
+    /// Two tasks that share the rooms of one at `middle`.
+    fn pair(
+        [references, spare]: [&'a mut [Reference]; 2],
+        middle: usize,
+        [a_filled, b_filled]: [Range<usize>; 2],
+        [a_extent, b_extent]: [Extent; 2],
+    ) -> [Self; 2] {
+        let (a, b) = references.split_at_mut(middle);
+        let (a_spare, b_spare) = spare.split_at_mut(middle);
+        let side = |references, spare, filled, extent| Self {
+            references,
+            spare,
+            filled,
+            extent,
+        };
+        [
+            side(a, a_spare, a_filled, a_extent),
+            side(b, b_spare, b_filled, b_extent),
+        ]
+    }
+}
+
+/// Moves `references` to the begin and the end of `to`, and returns the boxes of the centroids of both sides.
+fn partition<const AXIS: usize>(
+    references: &[Reference],
+    to: &mut [Reference],
+    grid: &Grid,
+    bin: usize,
+) -> [Bounds; 2] {
+    let (mut first, mut second) = (0, to.len());
+    let mut centroids = Centroids::EMPTY;
+    for reference in references {
+        let centroid = reference.centroid();
+        let beyond = grid.is_beyond::<AXIS>(centroid, bin);
+        centroids.add(centroid, beyond);
+        let is_beyond = beyond.bitmask() as usize & 1;
+        second -= is_beyond;
+        to[first + (second - first) * is_beyond] = *reference;
+        first += is_beyond ^ 1;
+    }
+    centroids.0
+}
+
+/// The boxes of the centroids on both sides of a split.
+#[derive(Clone, Copy)]
+struct Centroids([Bounds; 2]);
+
+impl Centroids {
+    const EMPTY: Self = Self([Bounds::EMPTY; 2]);
+
+    /// Adds to one side without a branch: for the other side the centroid lies at infinity.
+    #[inline(always)]
+    fn add(&mut self, centroid: Vec4, beyond: BVec4A) {
+        let [first, second] = &mut self.0;
+        let a = Vec4::select(beyond, Vec4::INFINITY, Vec4::ZERO);
+        let b = Vec4::select(beyond, Vec4::ZERO, Vec4::INFINITY);
+        first.min = first.min.min(centroid + a);
+        first.max = first.max.max(centroid - a);
+        second.min = second.min.min(centroid + b);
+        second.max = second.max.max(centroid - b);
+    }
+
+    fn union(self, other: Self) -> Self {
+        let [a, b] = self.0;
+        let [c, d] = other.0;
+        Self([a.union(c), b.union(d)])
+    }
+}
+
+/// As [`partition`], chunk by chunk; `parts` are their histograms, which say where each chunk's references go.
+fn partition_shared(
+    references: &[Reference],
+    to: &mut [Reference],
+    grid: &Grid,
+    split: &Split,
+    parts: &[Histogram],
+) -> [Bounds; 2] {
+    let (mut first, mut second) = to.split_at_mut(to.len() - (references.len() - split.count));
+    let mut chunks = Vec::with_capacity(parts.len());
+    for (chunk, part) in references.chunks(CHUNK).zip(parts) {
+        let below = part.below(split.axis, split.bin);
+        let (a, a_rest) = std::mem::take(&mut first).split_at_mut(below);
+        let (b, b_rest) = std::mem::take(&mut second).split_at_mut(chunk.len() - below);
+        (first, second) = (a_rest, b_rest);
+        chunks.push((chunk, [a, b]));
+    }
+    let joined = chunks
+        .into_par_iter()
+        .map(|(chunk, mut sides)| match split.axis {
+            0 => deal::<0>(chunk, &mut sides, grid, split.bin),
+            1 => deal::<1>(chunk, &mut sides, grid, split.bin),
+            _ => deal::<2>(chunk, &mut sides, grid, split.bin),
+        })
+        .reduce(|| Centroids::EMPTY, Centroids::union);
+    joined.0
+}
+
+/// Moves a chunk to its room on both sides.
+fn deal<const AXIS: usize>(
+    chunk: &[Reference],
+    sides: &mut [&mut [Reference]; 2],
+    grid: &Grid,
+    bin: usize,
+) -> Centroids {
+    let mut centroids = Centroids::EMPTY;
+    let mut filled = [0; 2];
+    for reference in chunk {
+        let centroid = reference.centroid();
+        let beyond = grid.is_beyond::<AXIS>(centroid, bin);
+        centroids.add(centroid, beyond);
+        let side = beyond.bitmask() as usize & 1;
+        sides[side][filled[side]] = *reference;
+        filled[side] += 1;
+    }
+    centroids
+}

@@ -6,7 +6,10 @@ use std::path::Path;
 use raylab::accel;
 use raylab::kernel;
 use raylab::lab::{Budget, Control, Event, NRule, Plan, sweep_from};
-use raylab::report::{Bundle, Provenance, Report, Run, SCHEMA_JSON};
+use raylab::report::{
+    Accuracy, Bundle, ErrorSpread, Places, Provenance, Rate, Report, Run, SCHEMA_JSON, SelfHits,
+    StartRule,
+};
 use serde_json::{Value, json};
 
 /// A plan that takes a second; no run of it is ended by its time.
@@ -123,7 +126,21 @@ fn an_unfinished_report_fits_the_schema_too() {
 fn a_report_with_measured_accuracy_fits_the_schema() {
     let home = tempfile::tempdir().unwrap();
     let mut report = measured(home.path()).report().clone();
-    report.runs[0].accuracy = Some(raylab::report::Accuracy::default());
+    report.runs[0].accuracy = Some(Accuracy::default());
+    let spread = Some(ErrorSpread::default());
+    let rate = Rate::of(1, 7);
+    report.runs[1].accuracy = Some(Accuracy {
+        plane: spread,
+        barycentric: spread,
+        self_hits: Some(StartRule::ALL.map(|rule| SelfHits { rule, rate })),
+        vertex_rotation: Some(rate),
+        translation: Some(rate),
+        ..Accuracy::default()
+    });
+    report.judged = Some(Places {
+        offsets: vec![0.0, 1e4],
+        scales: vec![1.0, 1e-30],
+    });
     assert_eq!(faults(&serde_json::to_value(&report).unwrap()), [""; 0]);
 }
 

@@ -1,63 +1,107 @@
 //! `raylab accuracy`: what each method decides wrongly by the oracle, beside its speed.
 
-use std::fs;
-use std::path::Path;
 use std::sync::Arc;
 
 use crate::accel;
 use crate::kernel;
-use crate::lab::{self, AccuracyEvent, AccuracyPlan, Control, Plan};
-use crate::report::{self, Provenance, Report, ReportError, Run};
+use crate::lab::{self, AccuracyEvent, AccuracyPlan, Control, Done, Judging, Plan};
+use crate::report::{self, Bundle, Places, Provenance, Report, Run};
 
 use super::args::AccuracyArgs;
 use super::choices::{split_list, thread_count, with_axes};
 use super::progress::Progress;
 use super::{Failure, interrupt, print, table};
 
-/// Judges, times, and prints the report or a table; with a folder, keeps the report there as it grows.
+/// Judges, times, and prints the report or tables; with a folder, keeps a bundle there as it grows.
 pub fn run(args: &AccuracyArgs) -> Result<(), Failure> {
-    let plan = plan(args)?;
-    plan.check()?;
-    let mut report = Report {
-        schema: Report::SCHEMA.to_owned(),
-        provenance: Provenance::gather(&plan.plan, super::command_line())?,
-        config: plan.plan.clone(),
-        runs: Vec::new(),
-    };
-    if let Some(dir) = &args.out {
-        begin(dir, &report)?;
-    }
-    let outcome = measure(&plan, args, &mut report)?;
-    if let Some(dir) = &args.out {
-        let mut files = 0;
-        for format in ["svg", "png", "html"] {
-            files += report::export(&report, format, dir)?.len();
-        }
-        if !args.quiet {
-            let dir = dir.display();
-            eprintln!("wrote report.json and {files} plots and pages to {dir}");
-        }
-    }
+    let (mut keeper, plan) = keeper(args)?;
+    let outcome = measure(&plan, args, &mut keeper)?;
+    let report = keeper.finish(args)?;
     if args.json {
         let text = serde_json::to_string_pretty(&report)
             .map_err(|e| Failure::Failed(format!("cannot write the report as JSON: {e}")))?;
         print(&format!("{text}\n"))?;
     } else {
         print(&table::accuracy(&report.runs))?;
+        print("\n")?;
+        print(&table::errors(&report.runs))?;
     }
     judge(&report, &outcome)
 }
 
-/// Makes the folder with a report that has no runs yet.
-fn begin(dir: &Path, report: &Report) -> Result<(), Failure> {
-    let file = dir.join("report.json");
-    if file.exists() {
-        let dir = dir.to_owned();
-        return Err(ReportError::Exists { dir }.into());
+/// Where judged runs are kept.
+enum Keeper {
+    /// In a folder, run by run.
+    Bundle(Box<Bundle>),
+    /// Only here.
+    Memory(Box<Report>),
+}
+
+/// A new keeper, or the one that was left, with what is to be judged.
+fn keeper(args: &AccuracyArgs) -> Result<(Keeper, AccuracyPlan), Failure> {
+    if let Some(dir) = &args.resume {
+        let (bundle, plan) = Bundle::resume_judged(dir)?;
+        return Ok((Keeper::Bundle(Box::new(bundle)), plan));
     }
-    fs::create_dir_all(dir)
-        .map_err(|why| Failure::Failed(format!("cannot make {}: {why}", dir.display())))?;
-    Ok(report.write(&file)?)
+    let plan = plan(args)?;
+    plan.check()?;
+    let provenance = Provenance::gather(&plan.plan, super::command_line())?;
+    let keeper = match &args.out {
+        Some(dir) => Keeper::Bundle(Box::new(Bundle::create_judged(dir, &plan, provenance)?)),
+        None => Keeper::Memory(Box::new(Report {
+            schema: Report::SCHEMA.to_owned(),
+            provenance,
+            config: plan.plan.clone(),
+            judged: Some(Places {
+                offsets: plan.offsets.clone(),
+                scales: plan.scales.clone(),
+            }),
+            runs: Vec::new(),
+        })),
+    };
+    Ok((keeper, plan))
+}
+
+impl Keeper {
+    fn done(&self) -> Done {
+        match self {
+            Self::Bundle(bundle) => bundle.done().clone(),
+            Self::Memory(_) => Done::default(),
+        }
+    }
+
+    fn note(&mut self, event: &AccuracyEvent) -> Result<(), Failure> {
+        match (self, event) {
+            (Self::Bundle(bundle), event) => Ok(bundle.note_judged(event)?),
+            (Self::Memory(report), AccuracyEvent::Finished { record }) => {
+                report.runs.push(Run::from(record.as_ref()));
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Writes what is still to be written, and hands over the report in the order of its plan.
+    fn finish(self, args: &AccuracyArgs) -> Result<Report, Failure> {
+        match self {
+            Self::Memory(mut report) => {
+                report.put_in_order();
+                Ok(*report)
+            }
+            Self::Bundle(mut bundle) => {
+                bundle.finish()?;
+                let mut files = 0;
+                for format in ["svg", "png", "html"] {
+                    files += report::export(bundle.report(), format, bundle.dir())?.len();
+                }
+                if !args.quiet {
+                    let dir = bundle.dir().display();
+                    eprintln!("wrote report.json and {files} plots and pages to {dir}");
+                }
+                Ok(bundle.report().clone())
+            }
+        }
+    }
 }
 
 /// How it went beside its figures.
@@ -71,7 +115,7 @@ struct Outcome {
 fn measure(
     plan: &AccuracyPlan,
     args: &AccuracyArgs,
-    report: &mut Report,
+    keeper: &mut Keeper,
 ) -> Result<Outcome, Failure> {
     let control = Arc::new(Control::default());
     let _watch = interrupt::watch(&control);
@@ -79,34 +123,58 @@ fn measure(
     let start = std::time::Instant::now();
     let mut outcome = Outcome::default();
     let mut broken = None;
-    lab::accuracy(plan, &control, &mut |event| match event {
-        AccuracyEvent::Doing { done, what } => {
-            // As long again for each run as the finished ones took.
-            let left = start.elapsed().as_secs_f64() * (1.0 / done.max(1e-3) - 1.0);
-            progress.update(Some((done, left)), &what);
+    let mut judging = Judging::default();
+    let done = keeper.done();
+    lab::accuracy_from(plan, &done, &control, &mut |event| {
+        if let Err(failure) = keeper.note(&event) {
+            broken.get_or_insert(failure);
+            control.stop();
         }
-        AccuracyEvent::Finished { record } => {
-            let mut run = Run::from(&record.run);
-            run.accuracy = Some(record.accuracy);
-            report.runs.push(run);
-            if let Some(dir) = &args.out
-                && let Err(why) = report.write(&dir.join("report.json"))
-            {
-                broken.get_or_insert(why);
-                control.stop();
+        match event {
+            AccuracyEvent::Doing { done, what } => {
+                // As long again for each run as the finished ones took.
+                let left = start.elapsed().as_secs_f64() * (1.0 / done.max(1e-3) - 1.0);
+                progress.update(Some((done, left)), &what);
             }
+            AccuracyEvent::Failed { why } => {
+                outcome.failed += 1;
+                progress.say(&format!("raylab: {why}"));
+            }
+            AccuracyEvent::Ended {
+                stopped,
+                judging: j,
+            } => {
+                outcome.stopped = stopped;
+                judging = j;
+            }
+            AccuracyEvent::Sampled { .. } | AccuracyEvent::Finished { .. } => {}
         }
-        AccuracyEvent::Failed { why } => {
-            outcome.failed += 1;
-            progress.say(&format!("raylab: {why}"));
-        }
-        AccuracyEvent::Ended { stopped } => outcome.stopped = stopped,
     })?;
     progress.clear();
+    if !args.quiet {
+        eprintln!("{}", told(&judging));
+    }
     match broken {
-        Some(why) => Err(why.into()),
+        Some(failure) => Err(failure),
         None => Ok(outcome),
     }
+}
+
+/// How fast was judged, in a sentence.
+fn told(judging: &Judging) -> String {
+    let speed = |(rays, seconds): (u64, f64)| {
+        let millions = rays as f64 * 1e-6;
+        format!(
+            "{} million rays at {} million/s",
+            table::significant(millions),
+            table::significant(millions / seconds.max(1e-9))
+        )
+    };
+    format!(
+        "asked the oracle about {}; traced (closest hit and occlusion) and judged {}",
+        speed(judging.truths),
+        speed(judging.answers)
+    )
 }
 
 /// The exit code: an accelerator that changes a right answer weighs most; a kernel that errs is what is measured.
@@ -156,15 +224,19 @@ fn plan(args: &AccuracyArgs) -> Result<AccuracyPlan, Failure> {
     if let Some(count) = args.rays_count {
         plan.ray_count = count;
     }
-    let offsets = args.offset.split(',').map(str::trim).map(|text| {
-        let number = text.parse().ok();
-        number.ok_or_else(|| {
-            Failure::Usage(format!(
-                "'{text}' is not an offset; write numbers, e.g. 0,1e4"
-            ))
-        })
-    });
-    let mut offsets: Vec<f64> = offsets.collect::<Result<_, _>>()?;
-    offsets.dedup();
-    Ok(AccuracyPlan { plan, offsets })
+    Ok(AccuracyPlan {
+        plan,
+        offsets: numbers(&args.offset, "an offset; write numbers, e.g. 0,1e4")?,
+        scales: numbers(&args.scale, "a scale; write numbers, e.g. 1,1e-30")?,
+    })
+}
+
+/// Reads a list of numbers; `what` says of an item that is none what it should be.
+fn numbers(text: &str, what: &str) -> Result<Vec<f64>, Failure> {
+    let number = |item: &str| {
+        let item = item.trim();
+        let wrong = || Failure::Usage(format!("'{item}' is not {what}"));
+        item.parse().ok().ok_or_else(wrong)
+    };
+    text.split(',').map(number).collect()
 }

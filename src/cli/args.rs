@@ -227,7 +227,7 @@ pub struct SweepArgs {
 #[derive(Debug, Args)]
 pub struct AccuracyArgs {
     /// The scenes
-    #[arg(required = true, value_name = "SCENE")]
+    #[arg(required_unless_present = "resume", value_name = "SCENE")]
     pub scenes: Vec<String>,
     /// Kernels, separated by commas [default: all]
     #[arg(long, value_name = "KERNELS")]
@@ -244,6 +244,9 @@ pub struct AccuracyArgs {
     /// How far scene and rays are moved from their place along each axis, separated by commas
     #[arg(long, value_name = "OFFSETS", default_value = "0,1e4")]
     pub offset: String,
+    /// Factors by which scene and rays are scaled about the origin before that, separated by commas
+    #[arg(long, value_name = "SCALES", default_value = "1")]
+    pub scale: String,
     /// Another axis: values of a parameter of the kernels or accelerators, e.g. `eps=1e-7,1e-5,1e-3`
     #[arg(long, value_name = "KEY=V1,V2")]
     pub set: Vec<String>,
@@ -256,9 +259,12 @@ pub struct AccuracyArgs {
     /// Fewer rays and samples: a first look
     #[arg(long)]
     pub quick: bool,
-    /// Write report and plots into this directory
+    /// Write the report bundle into this directory
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Go on with the interrupted measurement in this bundle; its own plan counts
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["scenes", "accel", "n", "kernel", "rays", "offset", "scale", "set", "rays_count", "threads", "seed", "out", "quick"])]
+    pub resume: Option<PathBuf>,
     /// Print the report to standard output
     #[arg(long)]
     pub json: bool,

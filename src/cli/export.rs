@@ -36,7 +36,7 @@ impl From<ReportError> for Failure {
             | ReportError::Journal { .. }
             | ReportError::NoBundle { .. } => Self::BadInput(text),
             ReportError::File { .. } => Self::Failed(text),
-            ReportError::Exists { .. } => Self::Usage(text),
+            ReportError::Exists { .. } | ReportError::OtherExperiment { .. } => Self::Usage(text),
         }
     }
 }

@@ -25,6 +25,7 @@ pub fn run(args: &SweepArgs) -> Result<(), Failure> {
             let plan = plan(args)?;
             Keeper::Memory(Box::new(Report {
                 schema: Report::SCHEMA.to_owned(),
+                judged: None,
                 provenance: provenance(&plan)?,
                 config: plan,
                 runs: Vec::new(),

@@ -1,7 +1,7 @@
 //! Tables for people.
 
-use crate::report::Run;
 use crate::report::series::{accel_label, kernel_label};
+use crate::report::{Accuracy, ErrorSpread, Rate, Run};
 
 /// One row a run: configuration, speed with its interval, work a ray, build, memory, and whether the answers are right.
 pub fn runs(runs: &[Run]) -> String {
@@ -48,7 +48,7 @@ fn row(run: &Run) -> [String; 13] {
 pub fn accuracy(runs: &[Run]) -> String {
     let header = [
         "scene",
-        "offset",
+        "place",
         "rays",
         "accel",
         "kernel",
@@ -63,7 +63,7 @@ pub fn accuracy(runs: &[Run]) -> String {
         "max",
     ];
     let sides = std::array::from_fn(|column| match column {
-        0 | 2 | 3 | 4 => Side::Left,
+        0..=4 => Side::Left,
         _ => Side::Right,
     });
     let mut rows = vec![header.map(str::to_owned)];
@@ -74,30 +74,111 @@ pub fn accuracy(runs: &[Run]) -> String {
 /// The cells of a judged run; `None` where it was not judged.
 fn judged(run: &Run) -> Option<[String; 14]> {
     let found = run.accuracy?;
-    let rate = |seen: u64, bound: f64| {
-        let rate = 100.0 * seen as f64 / found.rays.max(1) as f64;
-        format!("{} <={}", significant(rate), significant(100.0 * bound))
-    };
-    let bounds = found.upper95;
+    let rate = |seen: u64| percent(Rate::of(seen, found.rays));
+    let [scene, place, rays, accel, kernel] = method(run, &found);
     Some([
-        run.scene.clone(),
-        found.offset.to_string(),
-        run.rays.clone(),
-        accel_label(run),
-        kernel_label(run),
+        scene,
+        place,
+        rays,
+        accel,
+        kernel,
         significant(run.mrays_per_s.median),
-        rate(found.leaks, bounds.leaks),
-        rate(found.phantoms, bounds.phantoms),
-        rate(found.wrong_surface, bounds.wrong_surface),
-        rate(found.neighbour_swaps, bounds.neighbour_swaps),
-        rate(
-            found.occlusion_disagreements,
-            bounds.occlusion_disagreements,
-        ),
+        rate(found.leaks),
+        rate(found.phantoms),
+        rate(found.wrong_surface),
+        rate(found.neighbour_swaps),
+        rate(found.occlusion_disagreements),
         significant(found.t_ulp.p50),
         significant(found.t_ulp.p99),
         significant(found.t_ulp.max),
     ])
+}
+
+/// What was judged where.
+fn method(run: &Run, found: &Accuracy) -> [String; 5] {
+    let place = match found.scale {
+        1.0 => format!("{:e}", found.offset),
+        scale => format!("{:e} x{scale:e}", found.offset),
+    };
+    let n = run.n.map_or_else(String::new, |n| format!(" n={n}"));
+    [
+        run.scene.clone(),
+        place,
+        run.rays.clone(),
+        accel_label(run) + &n,
+        kernel_label(run),
+    ]
+}
+
+/// One row a judged run: how far right hits are off, how often secondary rays meet the triangle they leave, and how
+/// often answers change with what means nothing; rates in percent with their upper 95 % bounds.
+pub fn errors(runs: &[Run]) -> String {
+    let header = [
+        "scene",
+        "place",
+        "rays",
+        "accel",
+        "kernel",
+        "to plane p50",
+        "p99",
+        "max",
+        "barycentric p99",
+        "max",
+        "self-hits % naive",
+        "n*1e-4",
+        "t_min 1e-4",
+        "integer",
+        "bound",
+        "rotated %",
+        "moved %",
+    ];
+    let sides = std::array::from_fn(|column| match column {
+        0..=4 => Side::Left,
+        _ => Side::Right,
+    });
+    let mut rows = vec![header.map(str::to_owned)];
+    rows.extend(runs.iter().filter_map(row_of_errors));
+    columns(&rows, &sides)
+}
+
+/// The cells of a judged run; `None` where it was not judged.
+fn row_of_errors(run: &Run) -> Option<[String; 17]> {
+    let found = run.accuracy?;
+    let [scene, place, rays, accel, kernel] = method(run, &found);
+    let error = |spread: Option<ErrorSpread>, figure: fn(ErrorSpread) -> f64| {
+        spread.map_or_else(dash, |s| significant(figure(s)))
+    };
+    let rate = |rate: Option<Rate>| rate.map_or_else(dash, percent);
+    let start = |rule: usize| rate(found.self_hits.map(|rules| rules[rule].rate));
+    Some([
+        scene,
+        place,
+        rays,
+        accel,
+        kernel,
+        error(found.plane, |s| s.p50),
+        error(found.plane, |s| s.p99),
+        error(found.plane, |s| s.max),
+        error(found.barycentric, |s| s.p99),
+        error(found.barycentric, |s| s.max),
+        start(0),
+        start(1),
+        start(2),
+        start(3),
+        start(4),
+        rate(found.vertex_rotation),
+        rate(found.translation),
+    ])
+}
+
+fn dash() -> String {
+    "-".to_owned()
+}
+
+/// A rate with its upper bound, in percent.
+fn percent(rate: Rate) -> String {
+    let bound = significant(100.0 * rate.upper95);
+    format!("{} <={bound}", significant(100.0 * rate.share()))
 }
 
 /// The side of its column that a cell leans to: words to the left, numbers to the right.

@@ -28,6 +28,9 @@ pub enum LabError {
     /// A distance that a scene cannot be moved by.
     #[error("a scene cannot be moved by {0}; an offset is a finite number, at least 0")]
     Offset(String),
+    /// A factor that a scene cannot be scaled by.
+    #[error("a scene cannot be scaled by {0}; a scale is a finite number above 0")]
+    Scale(String),
     /// A thread count that makes no sense.
     #[error("{0} threads were asked for; ask for 1 to {max}", max = super::MAX_THREADS)]
     Threads(usize),

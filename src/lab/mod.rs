@@ -38,7 +38,8 @@ mod subset;
 mod sweep;
 
 pub use accuracy::{
-    Accuracy, AccuracyBounds, AccuracyEvent, AccuracyPlan, AccuracyRecord, UlpSpread, accuracy,
+    Accuracy, AccuracyBounds, AccuracyEvent, AccuracyPlan, AccuracyRecord, ErrorSpread, Judging,
+    Place, PlacedRun, Rate, SelfHits, StartRule, accuracy, accuracy_from,
 };
 pub use control::Control;
 pub use error::LabError;

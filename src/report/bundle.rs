@@ -17,10 +17,10 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::lab::{Done, Event, Plan, RunConfig, RunRecord};
+use crate::lab::{AccuracyEvent, AccuracyPlan, Done, Event, Plan, RunRecord};
 
 use super::journal::Journal;
-use super::{Provenance, Report, ReportError, Run};
+use super::{Places, Provenance, Report, ReportError, Run};
 
 /// A bundle that a sweep writes to.
 #[derive(Debug)]
@@ -47,6 +47,31 @@ impl Bundle {
     /// # Errors
     /// There is a bundle already; the folder or a file cannot be made.
     pub fn create(dir: &Path, plan: &Plan, provenance: Provenance) -> Result<Self, ReportError> {
+        Self::make(dir, plan, None, provenance)
+    }
+
+    /// As [`Bundle::create`], for runs that the oracle judges.
+    ///
+    /// # Errors
+    /// As [`Bundle::create`].
+    pub fn create_judged(
+        dir: &Path,
+        plan: &AccuracyPlan,
+        provenance: Provenance,
+    ) -> Result<Self, ReportError> {
+        let places = Places {
+            offsets: plan.offsets.clone(),
+            scales: plan.scales.clone(),
+        };
+        Self::make(dir, &plan.plan, Some(places), provenance)
+    }
+
+    fn make(
+        dir: &Path,
+        plan: &Plan,
+        judged: Option<Places>,
+        provenance: Provenance,
+    ) -> Result<Self, ReportError> {
         let [report, runs, samples] = paths(dir);
         if report.exists() || runs.exists() {
             let dir = dir.to_owned();
@@ -59,6 +84,7 @@ impl Bundle {
                 schema: Report::SCHEMA.to_owned(),
                 provenance,
                 config: plan.clone(),
+                judged,
                 runs: Vec::new(),
             },
             done: Done::default(),
@@ -73,8 +99,32 @@ impl Bundle {
     /// Opens a bundle that a stopped or killed sweep left, with everything that was measured.
     ///
     /// # Errors
-    /// There is none; a file cannot be read; a line of the journal other than the last is broken.
+    /// There is none, or one of judged runs; a file cannot be read; a line of the journal other than the last is broken.
     pub fn resume(dir: &Path) -> Result<Self, ReportError> {
+        let bundle = Self::open(dir)?;
+        if bundle.report.judged.is_some() {
+            let (dir, made_by) = (dir.to_owned(), "accuracy");
+            return Err(ReportError::OtherExperiment { dir, made_by });
+        }
+        Ok(bundle)
+    }
+
+    /// As [`Bundle::resume`], of runs that the oracle judges; with their plan.
+    ///
+    /// # Errors
+    /// As [`Bundle::resume`]; the bundle is one of a sweep.
+    pub fn resume_judged(dir: &Path) -> Result<(Self, AccuracyPlan), ReportError> {
+        let bundle = Self::open(dir)?;
+        match bundle.report.accuracy_plan() {
+            Some(plan) => Ok((bundle, plan)),
+            None => {
+                let (dir, made_by) = (dir.to_owned(), "sweep");
+                Err(ReportError::OtherExperiment { dir, made_by })
+            }
+        }
+    }
+
+    fn open(dir: &Path) -> Result<Self, ReportError> {
         let [report, runs, samples] = paths(dir);
         let mut report = Report::read(if report.exists() { &report } else { dir })?;
         let (finished, runs) = Journal::resume::<Run>(runs)?;
@@ -112,13 +162,7 @@ impl Bundle {
         match event {
             Event::Sampled {
                 id, mrays_per_s, ..
-            } => self.samples.append(
-                &Sample {
-                    id: id.clone(),
-                    mrays_per_s: *mrays_per_s,
-                },
-                false,
-            ),
+            } => self.note_sample(id, *mrays_per_s),
             Event::Finished { record } => self.append(record),
             Event::Failed { id, why } => {
                 self.failed.push((id.clone(), why.clone()));
@@ -128,13 +172,33 @@ impl Bundle {
         }
     }
 
+    /// Keeps what an event of judged runs says. To be called with every event.
+    ///
+    /// # Errors
+    /// A journal cannot be written.
+    pub fn note_judged(&mut self, event: &AccuracyEvent) -> Result<(), ReportError> {
+        match event {
+            AccuracyEvent::Sampled { id, mrays_per_s } => self.note_sample(id, *mrays_per_s),
+            AccuracyEvent::Finished { record } => self.keep(Run::from(record.as_ref())),
+            _ => Ok(()),
+        }
+    }
+
+    fn note_sample(&mut self, id: &str, mrays_per_s: f64) -> Result<(), ReportError> {
+        let id = id.to_owned();
+        self.samples.append(&Sample { id, mrays_per_s }, false)
+    }
+
     /// Appends a finished run to the journal and syncs it to disk; a run that is there already is left alone.
     ///
     /// # Errors
     /// The journal cannot be written.
     pub fn append(&mut self, record: &RunRecord) -> Result<(), ReportError> {
-        if self.done.finished.insert(record.id.clone()) {
-            let run = Run::from(record);
+        self.keep(Run::from(record))
+    }
+
+    fn keep(&mut self, run: Run) -> Result<(), ReportError> {
+        if self.done.finished.insert(run.id.clone()) {
             self.runs.append(&run, true)?;
             self.report.runs.push(run);
         }
@@ -147,17 +211,7 @@ impl Bundle {
     /// # Errors
     /// A file cannot be written.
     pub fn finish(&mut self) -> Result<(), ReportError> {
-        let order: BTreeMap<String, usize> = self
-            .report
-            .config
-            .runs()
-            .iter()
-            .map(RunConfig::id)
-            .zip(0..)
-            .collect();
-        self.report
-            .runs
-            .sort_by_key(|run| order.get(&run.id).copied().unwrap_or(usize::MAX));
+        self.report.put_in_order();
         self.report.write(&self.dir.join("report.json"))?;
         if self.is_complete() {
             self.samples.clear()?;
@@ -168,9 +222,8 @@ impl Bundle {
     /// Whether every run of the plan is finished.
     #[must_use]
     pub fn is_complete(&self) -> bool {
-        let runs = self.report.config.runs();
-        runs.iter()
-            .all(|run| self.done.finished.contains(&run.id()))
+        let ids = self.report.planned_ids();
+        ids.iter().all(|id| self.done.finished.contains(id))
     }
 
     /// The folder.

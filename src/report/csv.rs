@@ -4,7 +4,7 @@ use crate::accel::StructureStats;
 use crate::lab::PerRay;
 
 use super::series::{accel_label, kernel_label};
-use super::{Accuracy, Report, Run};
+use super::{Accuracy, ErrorSpread, Rate, Report, Run};
 
 /// Name of a column and what a run has there.
 type Column = (&'static str, fn(&Run) -> String);
@@ -90,6 +90,7 @@ const COLUMNS: &[Column] = &[
         r.wrong_answers.map(|n| n.to_string()).unwrap_or_default()
     }),
     ("offset", |r| judged(r, |a| a.offset.to_string())),
+    ("scale", |r| judged(r, |a| a.scale.to_string())),
     ("judged_rays", |r| judged(r, |a| a.rays.to_string())),
     ("leaks", |r| judged(r, |a| a.leaks.to_string())),
     ("phantoms", |r| judged(r, |a| a.phantoms.to_string())),
@@ -105,6 +106,28 @@ const COLUMNS: &[Column] = &[
     ("t_ulp_p50", |r| judged(r, |a| real(a.t_ulp.p50))),
     ("t_ulp_p99", |r| judged(r, |a| real(a.t_ulp.p99))),
     ("t_ulp_max", |r| judged(r, |a| real(a.t_ulp.max))),
+    ("ties", |r| judged(r, |a| a.ties.to_string())),
+    ("plane_p50", |r| judged(r, |a| spread(a.plane, |s| s.p50))),
+    ("plane_p99", |r| judged(r, |a| spread(a.plane, |s| s.p99))),
+    ("plane_max", |r| judged(r, |a| spread(a.plane, |s| s.max))),
+    ("barycentric_p50", |r| {
+        judged(r, |a| spread(a.barycentric, |s| s.p50))
+    }),
+    ("barycentric_p99", |r| {
+        judged(r, |a| spread(a.barycentric, |s| s.p99))
+    }),
+    ("barycentric_max", |r| {
+        judged(r, |a| spread(a.barycentric, |s| s.max))
+    }),
+    ("self_hits_naive", |r| judged(r, |a| self_hits(a, 0))),
+    ("self_hits_normal", |r| judged(r, |a| self_hits(a, 1))),
+    ("self_hits_t_min", |r| judged(r, |a| self_hits(a, 2))),
+    ("self_hits_integer", |r| judged(r, |a| self_hits(a, 3))),
+    ("self_hits_error_bound", |r| judged(r, |a| self_hits(a, 4))),
+    ("vertex_rotation", |r| {
+        judged(r, |a| share(a.vertex_rotation))
+    }),
+    ("translation", |r| judged(r, |a| share(a.translation))),
     ("warnings", |r| r.warnings.join("; ")),
 ];
 
@@ -133,6 +156,19 @@ fn shape(run: &Run, figure: fn(&StructureStats) -> String) -> String {
 /// A figure of the oracle's; empty where the run was not judged.
 fn judged(run: &Run, figure: fn(&Accuracy) -> String) -> String {
     run.accuracy.as_ref().map(figure).unwrap_or_default()
+}
+
+fn spread(spread: Option<ErrorSpread>, figure: fn(&ErrorSpread) -> f64) -> String {
+    spread.as_ref().map(|s| real(figure(s))).unwrap_or_default()
+}
+
+/// The rate of self-hits by the rule of this index.
+fn self_hits(accuracy: &Accuracy, rule: usize) -> String {
+    share(accuracy.self_hits.map(|rules| rules[rule].rate))
+}
+
+fn share(rate: Option<Rate>) -> String {
+    rate.map(|rate| real(rate.share())).unwrap_or_default()
 }
 
 fn real(x: f64) -> String {

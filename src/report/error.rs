@@ -64,6 +64,14 @@ pub enum ReportError {
         /// The folder.
         dir: PathBuf,
     },
+    /// A bundle of another experiment.
+    #[error("{} was written by `raylab {made_by}`; go on with it by `raylab {made_by} --resume`", dir.display())]
+    OtherExperiment {
+        /// The folder.
+        dir: PathBuf,
+        /// The command that wrote it.
+        made_by: &'static str,
+    },
 }
 
 impl ReportError {

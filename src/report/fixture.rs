@@ -1,7 +1,9 @@
 //! Reports that look measured, for tests of what is made from reports. Deterministic: no clock, no random source.
 
 use crate::accel::{Prediction, StructureStats};
-use crate::lab::{Accuracy, Budget, Checksum, NRule, PerRay, Plan, Spread, StopReason, UlpSpread};
+use crate::lab::{
+    Accuracy, Budget, Checksum, ErrorSpread, NRule, PerRay, Plan, Spread, StopReason,
+};
 use crate::registry::Params;
 use crate::stats::Summary;
 
@@ -167,6 +169,7 @@ pub const N: [u32; 17] = [
 pub fn report(runs: Vec<Run>) -> Report {
     Report {
         schema: Report::SCHEMA.to_owned(),
+        judged: None,
         provenance: Provenance {
             version: "0.1.0".to_owned(),
             commit: "4cb6f16d0c1d".to_owned(),
@@ -235,7 +238,7 @@ pub fn judged(kernel: &str, offset: f64, speed: f64, wrong: u64) -> Run {
             rays: 65_536,
             leaks: wrong / 2,
             wrong_surface: wrong - wrong / 2,
-            t_ulp: UlpSpread {
+            t_ulp: ErrorSpread {
                 p50: 0.4,
                 p99: 2.0 + wrong as f64,
                 max: 9.0 + 3.0 * wrong as f64,

@@ -1,7 +1,7 @@
 //! One self-contained page: figures, tables, provenance, warnings. It opens without a network and follows the reader's
 //! preference for light or dark.
 
-use super::judged::{Course, courses, offsets};
+use super::judged::{Course, courses, drifts, places, tuned};
 use super::plot::text::{css, escape};
 use super::plot::{self, Kind, Subject};
 use super::series::panels;
@@ -83,11 +83,25 @@ pub(super) fn page(report: &Report) -> Result<String, ExportError> {
 fn accuracy(report: &Report, course: &Course) -> Result<String, ExportError> {
     let title = escape(&course.to_string());
     let mut html = vec![format!("<h2>Accuracy beside speed: {title}</h2>\n")];
-    for offset in offsets(&report.runs, course) {
-        html.extend(plot::svg(report, &Subject::Pareto(course.clone(), offset))?);
+    let runs = &report.runs;
+    let subjects = places(runs, course)
+        .into_iter()
+        .map(|place| Subject::Pareto(course.clone(), place))
+        .chain(
+            drifts(runs, course)
+                .into_iter()
+                .map(|along| Subject::Drift(course.clone(), along)),
+        )
+        .chain(
+            tuned(runs, course)
+                .into_iter()
+                .map(|tuned| Subject::Tuned(course.clone(), tuned)),
+        );
+    for subject in subjects {
+        html.extend(plot::svg(report, &subject)?);
     }
-    html.extend(plot::svg(report, &Subject::Drift(course.clone()))?);
     html.push(tabulated(&table::accuracy(report, course)));
+    html.push(tabulated(&table::errors(report, course)));
     Ok(html.concat())
 }
 

@@ -19,6 +19,8 @@ pub(super) fn page(report: &Report) -> String {
         let title = escaped(&course.to_string());
         text.push(format!("\n## Accuracy beside speed: {title}\n\n"));
         text.push(tabulated(&table::accuracy(report, &course)));
+        text.push("\n".to_owned());
+        text.push(tabulated(&table::errors(report, &course)));
     }
     let warnings = table::warnings(report);
     if !warnings.is_empty() {

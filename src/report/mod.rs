@@ -19,10 +19,10 @@ mod run;
 pub mod series;
 mod table;
 
-pub use crate::lab::{Accuracy, AccuracyBounds, UlpSpread};
+pub use crate::lab::{Accuracy, AccuracyBounds, ErrorSpread, Place, Rate, SelfHits, StartRule};
 pub use bundle::Bundle;
 pub use error::ReportError;
 pub use export::{ExportError, FORMATS, FormatEntry, export};
-pub use model::{Provenance, Report, Run, SceneFacts};
+pub use model::{Places, Provenance, Report, Run, SceneFacts};
 pub use peers::page as peers_page;
 pub use read::{SCHEMA_JSON, replace};

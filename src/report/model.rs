@@ -1,9 +1,11 @@
 //! `report.json` as types. The names are a contract; the schema beside this file states them for others.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 
 use crate::accel::{Prediction, StructureStats};
-use crate::lab::{Accuracy, Checksum, PerRay, Plan, StopReason};
+use crate::lab::{Accuracy, AccuracyPlan, Checksum, PerRay, Plan, RunConfig, StopReason};
 use crate::registry::Params;
 use crate::stats::Summary;
 
@@ -16,6 +18,9 @@ pub struct Report {
     pub provenance: Provenance,
     /// What was asked for.
     pub config: Plan,
+    /// Where scenes were judged, where `accuracy` made the report.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub judged: Option<Places>,
     /// What was measured.
     pub runs: Vec<Run>,
 }
@@ -23,6 +28,42 @@ pub struct Report {
 impl Report {
     /// The name and version of the format.
     pub const SCHEMA: &'static str = "raylab/report/1";
+
+    /// What was asked of `accuracy`; `None` where the report is one of a sweep.
+    #[must_use]
+    pub fn accuracy_plan(&self) -> Option<AccuracyPlan> {
+        let places = self.judged.as_ref()?;
+        Some(AccuracyPlan {
+            plan: self.config.clone(),
+            offsets: places.offsets.clone(),
+            scales: places.scales.clone(),
+        })
+    }
+
+    /// The ids of all runs that were asked for, in the order of the plan.
+    #[must_use]
+    pub fn planned_ids(&self) -> Vec<String> {
+        match self.accuracy_plan() {
+            Some(plan) => plan.runs().into_iter().map(|run| run.id).collect(),
+            None => self.config.runs().iter().map(RunConfig::id).collect(),
+        }
+    }
+
+    /// Puts the runs into the order of the plan; those that it does not know come last.
+    pub fn put_in_order(&mut self) {
+        let order: BTreeMap<String, usize> = self.planned_ids().into_iter().zip(0..).collect();
+        self.runs
+            .sort_by_key(|run| order.get(&run.id).copied().unwrap_or(usize::MAX));
+    }
+}
+
+/// Where scenes were judged: at each offset at each scale.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Places {
+    /// How far they were moved along each axis.
+    pub offsets: Vec<f64>,
+    /// Factors about the world's origin, before that.
+    pub scales: Vec<f64>,
 }
 
 /// Where and how a report was measured.

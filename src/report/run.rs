@@ -2,7 +2,7 @@
 
 use crate::accel;
 use crate::kernel;
-use crate::lab::{NRule, RunRecord};
+use crate::lab::{AccuracyRecord, NRule, RunRecord};
 use crate::registry::{Params, Value};
 use crate::stats::Summary;
 
@@ -61,6 +61,16 @@ impl From<&RunRecord> for Run {
             wrong_answers: record.wrong_answers,
             accuracy: None,
             warnings: record.warnings.clone(),
+        }
+    }
+}
+
+impl From<&AccuracyRecord> for Run {
+    /// As of a sweep's record, with what the oracle found.
+    fn from(record: &AccuracyRecord) -> Self {
+        Self {
+            accuracy: Some(record.accuracy),
+            ..Self::from(&record.run)
         }
     }
 }

@@ -266,6 +266,16 @@ pub fn kernel_label(run: &Run) -> String {
     })
 }
 
+/// The kernel's parameters that are numbers.
+#[must_use]
+pub fn kernel_numbers(run: &Run) -> Vec<(String, f64)> {
+    let numbers = run.params.iter().filter_map(|(key, _)| {
+        let name = kernel_key(run, key)?;
+        Some((name.to_owned(), run.params.number(key)?))
+    });
+    numbers.collect()
+}
+
 fn accel_specs(run: &Run) -> &'static [ParamSpec] {
     accel::entry(&run.accel).map_or(&[][..], |entry| entry.params)
 }

@@ -1,9 +1,9 @@
 //! What pages of a report tabulate: runs, provenance, how it was measured. Texts without markup; the formats add theirs.
 
-use super::judged::{Course, offsets, points};
+use super::judged::{Course, Judged, places, points};
 use super::plot::text::{measured, number};
 use super::series::{PanelKey, accel_label};
-use super::{Report, Run};
+use super::{ErrorSpread, Place, Rate, Report, Run, StartRule};
 
 /// Rows under a head; all rows are as long as the head.
 pub(super) struct Table {
@@ -107,34 +107,11 @@ fn verdict(run: &Run) -> String {
     }
 }
 
-/// What the oracle found on one course: rates in percent with their upper 95 % bounds, one row a method and offset.
+/// What the oracle found on one course: rates in percent with their upper 95 % bounds, one row a method and place.
 pub(super) fn accuracy(report: &Report, course: &Course) -> Table {
-    let mut rows = Vec::new();
-    for offset in offsets(&report.runs, course) {
-        for point in points(&report.runs, course, offset) {
-            let a = point.accuracy;
-            let rate = |seen: u64, bound: f64| {
-                let rate = 100.0 * seen as f64 / a.rays.max(1) as f64;
-                format!("{} (≤ {})", measured(rate), measured(100.0 * bound))
-            };
-            rows.push(vec![
-                point.label,
-                number(offset),
-                measured(point.speed[0]),
-                rate(a.leaks, a.upper95.leaks),
-                rate(a.phantoms, a.upper95.phantoms),
-                rate(a.wrong_surface, a.upper95.wrong_surface),
-                rate(a.neighbour_swaps, a.upper95.neighbour_swaps),
-                rate(a.occlusion_disagreements, a.upper95.occlusion_disagreements),
-                [a.t_ulp.p50, a.t_ulp.p99, a.t_ulp.max]
-                    .map(measured)
-                    .join(" / "),
-            ]);
-        }
-    }
     let head = vec![
         "kernel",
-        "offset",
+        "place",
         "Mrays/s",
         "leaks %",
         "phantoms %",
@@ -143,7 +120,97 @@ pub(super) fn accuracy(report: &Report, course: &Course) -> Table {
         "occlusion differs %",
         "t ulp p50 / p99 / max",
     ];
-    Table { head, rows }
+    let row = |point: Judged, place: Place| {
+        let a = point.accuracy;
+        let rate = |seen: u64| percent(Rate::of(seen, a.rays));
+        vec![
+            point.label,
+            written(place),
+            measured(point.speed[0]),
+            rate(a.leaks),
+            rate(a.phantoms),
+            rate(a.wrong_surface),
+            rate(a.neighbour_swaps),
+            rate(a.occlusion_disagreements),
+            spread(Some(a.t_ulp)),
+        ]
+    };
+    Table {
+        head,
+        rows: by_place(report, course, row),
+    }
+}
+
+/// How far right hits are off on one course, what secondary rays do, and what answers change with.
+pub(super) fn errors(report: &Report, course: &Course) -> Table {
+    let head = vec![
+        "kernel",
+        "place",
+        "to plane / scene p50 / p99 / max",
+        "barycentric p50 / p99 / max",
+        "self-hits % naive",
+        "n·1e-4",
+        "t_min 1e-4",
+        "integer",
+        "bound",
+        "vertex rotation %",
+        "translation %",
+    ];
+    let row = |point: Judged, place: Place| {
+        let a = point.accuracy;
+        let or_dash = |rate: Option<Rate>| rate.map_or_else(|| "–".to_owned(), percent);
+        let mut row = vec![
+            point.label,
+            written(place),
+            spread(a.plane),
+            spread(a.barycentric),
+        ];
+        let rules = 0..StartRule::ALL.len();
+        row.extend(rules.map(|rule| or_dash(a.self_hits.map(|rules| rules[rule].rate))));
+        row.push(or_dash(a.vertex_rotation));
+        row.push(or_dash(a.translation));
+        row
+    };
+    Table {
+        head,
+        rows: by_place(report, course, row),
+    }
+}
+
+/// One row a method and place.
+fn by_place(
+    report: &Report,
+    course: &Course,
+    row: impl Fn(Judged, Place) -> Vec<String>,
+) -> Vec<Vec<String>> {
+    let places = places(&report.runs, course).into_iter();
+    let rows = places.flat_map(|place| {
+        let points = points(&report.runs, course, place).into_iter();
+        points.map(move |point| (point, place))
+    });
+    rows.map(|(point, place)| row(point, place)).collect()
+}
+
+/// `0`, `10,000`, `0 × 10⁻³⁰`: the offset, and the scale where it is another.
+fn written(place: Place) -> String {
+    if place.scale == 1.0 {
+        number(place.offset)
+    } else {
+        format!("{} × {}", number(place.offset), number(place.scale))
+    }
+}
+
+/// A rate and its upper bound, in percent.
+fn percent(rate: Rate) -> String {
+    let bound = measured(100.0 * rate.upper95);
+    format!("{} (≤ {bound})", measured(100.0 * rate.share()))
+}
+
+fn spread(spread: Option<ErrorSpread>) -> String {
+    spread.map_or_else(
+        || "–".to_owned(),
+        |s| [s.p50, s.p99, s.max].map(measured).join(" / "),
+    )
 }
 
 /// A measured number, or a dash where it is none.

@@ -4,12 +4,14 @@
 //! because times are not normally distributed. Everything is deterministic: the bootstrap draws from a seeded PCG.
 
 mod bootstrap;
+mod histogram;
 mod order;
 mod proportion;
 
 use serde::{Deserialize, Serialize};
 
 pub use bootstrap::{Interval, median_interval, ratio_interval};
+pub use histogram::Histogram;
 pub use order::{mad, median, percentile};
 pub use proportion::upper95;
 

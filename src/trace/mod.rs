@@ -19,7 +19,7 @@ use thiserror::Error;
 
 use crate::accel::BuildError;
 use crate::geometry::Ray;
-use crate::registry::{ChoiceError, ParamSpec};
+use crate::registry::{Choice, ChoiceError, ParamSpec, Params};
 use crate::scene::Scene;
 
 mod ao;
@@ -34,7 +34,10 @@ mod grazing;
 mod primary;
 mod random;
 mod sample;
+mod seam;
 mod shadow;
+
+pub(crate) use sample::{cosine_direction, generator};
 
 pub use batch::{
     BATCH, closest, closest_counted, closest_into, occluded, occluded_counted, occluded_into,
@@ -70,6 +73,8 @@ pub struct RayRequest<'a> {
     pub scene: &'a Scene,
     /// What follows the name and its `:` in the spec; empty where nothing does.
     pub argument: &'a str,
+    /// The set's parameters, all set.
+    pub params: &'a Params,
     /// How many rays are wanted; a set holds at most as many, `file` as many as the file.
     pub count: usize,
     /// Seed of what is random.
@@ -87,7 +92,7 @@ pub struct RaySetEntry {
     pub query: Query,
     /// What follows the name after a `:`, e.g. `PATH`; empty where nothing does.
     pub argument: &'static str,
-    /// Parameters; none so far.
+    /// Parameters, written `name:key=value`; none where the set has an argument.
     pub params: &'static [ParamSpec],
     /// Makes the set.
     #[serde(skip)]
@@ -176,18 +181,22 @@ pub enum RayError {
     },
 }
 
-/// The row that `spec` names, and its argument.
+/// The row that `spec` names, its argument, and its parameters, all set.
 ///
 /// # Errors
-/// An unknown name; an argument too many or missing.
-pub fn parse(spec: &str) -> Result<(&'static RaySetEntry, &str), RayError> {
+/// An unknown name or parameter; an argument too many or missing.
+pub fn parse(spec: &str) -> Result<(&'static RaySetEntry, &str, Params), RayError> {
     let (name, argument) = spec.split_once(':').unwrap_or((spec, ""));
     let entry = RAY_SETS
         .iter()
         .find(|s| s.name == name)
         .ok_or_else(|| ChoiceError::unknown("ray set", name, RAY_SETS.iter().map(|s| s.name)))?;
+    if !entry.params.is_empty() {
+        let rows = RAY_SETS.iter().map(|s| (s.name, s.params));
+        return Ok((entry, "", Choice::parse("ray set", spec, rows)?.params));
+    }
     if argument.is_empty() == entry.argument.is_empty() {
-        return Ok((entry, argument));
+        return Ok((entry, argument, Params::default()));
     }
     let expected = match entry.argument {
         "" => format!("'{name}'"),
@@ -204,7 +213,7 @@ pub fn parse(spec: &str) -> Result<(&'static RaySetEntry, &str), RayError> {
 /// # Errors
 /// Those of [`ray_set`] that do not depend on the scene.
 pub fn check(spec: &str, count: usize) -> Result<(), RayError> {
-    let (entry, argument) = parse(spec)?;
+    let (entry, argument, _) = parse(spec)?;
     if count == 0 || count > MAX_RAYS {
         return Err(RayError::Count(count));
     }
@@ -221,13 +230,14 @@ pub fn check(spec: &str, count: usize) -> Result<(), RayError> {
 /// # Errors
 /// An unknown spec, a count of 0 or beyond [`MAX_RAYS`], a ray file that cannot be read.
 pub fn ray_set(scene: &Scene, spec: &str, count: usize, seed: u64) -> Result<RaySet, RayError> {
-    let (entry, argument) = parse(spec)?;
+    let (entry, argument, params) = parse(spec)?;
     if count == 0 || count > MAX_RAYS {
         return Err(RayError::Count(count));
     }
     let mut made = (entry.make)(&RayRequest {
         scene,
         argument,
+        params: &params,
         count,
         seed,
     })?;

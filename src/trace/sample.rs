@@ -7,7 +7,7 @@ use rand_pcg::Pcg32;
 use crate::geometry::DVec3;
 
 /// A generator for `seed`; different `purpose`s of one seed are independent streams.
-pub(super) fn generator(seed: u64, purpose: u64) -> Pcg32 {
+pub fn generator(seed: u64, purpose: u64) -> Pcg32 {
     Pcg32::new(seed, purpose)
 }
 
@@ -40,7 +40,7 @@ pub(super) fn direction(random: &mut Pcg32) -> DVec3 {
 
 /// A unit vector around the unit vector `normal`, with a density proportional to the cosine between them (Malley: a
 /// uniform point of the disc, projected up).
-pub(super) fn cosine_direction(random: &mut Pcg32, normal: DVec3) -> DVec3 {
+pub fn cosine_direction(random: &mut Pcg32, normal: DVec3) -> DVec3 {
     let [x, y] = disc(random);
     let (tangent, bitangent) = normal.any_orthonormal_pair();
     tangent * x + bitangent * y + normal * (1.0 - x * x - y * y).sqrt()

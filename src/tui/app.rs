@@ -254,6 +254,7 @@ impl App {
                 Ok(provenance) => {
                     let report = Report {
                         schema: Report::SCHEMA.to_owned(),
+                        judged: None,
                         provenance,
                         config: plan,
                         runs,

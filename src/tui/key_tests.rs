@@ -18,6 +18,7 @@ fn press(state: &mut State, key: Key) -> Vec<Effect> {
 fn report() -> Report {
     Report {
         schema: Report::SCHEMA.to_owned(),
+        judged: None,
         provenance: crate::report::Provenance::default(),
         config: crate::lab::Plan::default(),
         runs: fixture::finished().built(),

@@ -156,6 +156,7 @@ mod tests {
         .unwrap();
         let mut report = Report {
             schema: Report::SCHEMA.to_owned(),
+            judged: None,
             provenance: crate::report::Provenance::default(),
             config: crate::lab::Plan::default(),
             runs: vec![runs[1].clone()],

@@ -1,4 +1,4 @@
-//! What the oracle says of each ray, and what a method's answer to it is worth.
+//! What a method's answers are worth by the truth.
 //!
 //! | word | the oracle | the method |
 //! |---|---|---|
@@ -16,17 +16,25 @@
 //! The tolerance knows neither the method nor the triangles' neighbourhood, and shared edges seen at slopes below
 //! 1/64 can be called wrong surfaces.
 //!
-//! **Error of t.** Over right hits, |t − t*| in units of the last place of t*: the distance of neighbouring `f32` around
-//! it. Half an ulp is the best that a rounded t can be.
+//! **Errors**, over right hits. Of t: |t − t*| in units of the last place of t*, the distance of neighbouring `f32` around
+//! it; half an ulp is the best that a rounded t can be. Of the point: the distance of o + t·d, computed in `f32` as a
+//! renderer does, from the plane of the triangle, as a share of the diagonal of the scene's box. Of the barycentric
+//! weights: the greater of |u − u*| and |v − v*|. Both true values are computed in `f64`, which for weights of triangles
+//! thinner than 1 : 10⁸ as the ray sees them is itself no better than an `f32`.
+
+use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use crate::geometry::{Hit, Ray};
+use crate::accel::Accelerator;
+use crate::geometry::{Hit, Ray, Vec3};
 use crate::oracle::Oracle;
 use crate::scene::Mesh;
-use crate::stats::upper95;
+use crate::stats::{Histogram, upper95};
+use crate::trace::BATCH;
 
-use super::{Accuracy, AccuracyBounds, UlpSpread};
+use super::truth::{self, Truth, TruthBatch};
+use super::{Accuracy, AccuracyBounds, ErrorSpread, Place};
 
 /// Unit roundoff of `f32`.
 const U: f64 = 1.0 / (1 << 24) as f64;
@@ -34,31 +42,123 @@ const U: f64 = 1.0 / (1 << 24) as f64;
 /// Roundings within which two hits are the same point.
 const SAME_POINT: f64 = 64.0 * U;
 
-/// The truth of one ray, kept small: a set may have millions.
-#[derive(Debug, Clone)]
-enum Truth {
-    Miss,
-    Hit {
-        t: f64,
-        first: u32,
-        /// The rest of the tie set, ascending; mostly none, which takes no memory elsewhere.
-        others: Box<[u32]>,
-    },
-}
-
-/// What the oracle says of a list of rays.
+/// What the oracle says of a list of rays, and how large the mesh is.
 #[derive(Debug)]
 pub(in crate::lab) struct Truths {
-    truths: Vec<Truth>,
+    /// One for each [`BATCH`] rays.
+    batches: Vec<TruthBatch>,
+    mesh: Arc<Mesh>,
     /// Largest absolute coordinate of the mesh.
     extent: f64,
+    /// Diagonal of the mesh's box.
+    diagonal: f64,
+}
+
+impl Truths {
+    /// Asks the oracle of `mesh`, in the current rayon pool.
+    pub fn new(oracle: &Oracle, mesh: &Arc<Mesh>, rays: &[Ray]) -> Self {
+        let bounds = mesh.bounds();
+        Self {
+            batches: truth::batches(oracle, rays),
+            mesh: Arc::clone(mesh),
+            extent: f64::from(bounds.max_abs()),
+            diagonal: (bounds.max.as_dvec3() - bounds.min.as_dvec3()).length(),
+        }
+    }
+
+    /// Asks `accel` both queries about all rays, batch by batch in the current rayon pool, and counts what the answers
+    /// are worth. Nothing is kept of an answer once it is judged.
+    pub(super) fn judge(&self, accel: &dyn Accelerator, rays: &[Ray], place: Place) -> Accuracy {
+        let batches = rays.par_chunks(BATCH).zip(&self.batches);
+        let tally = batches.fold(Tally::default, |mut tally, (rays, truths)| {
+            let mut hits = vec![Hit::MISS; rays.len()];
+            let mut blocked = vec![false; rays.len()];
+            accel.closest(rays, &mut hits);
+            accel.occluded(rays, &mut blocked);
+            self.tally(&mut tally, truths, rays, &hits, &blocked);
+            tally
+        });
+        tally.reduce(Tally::default, Tally::joined).accuracy(place)
+    }
+
+    /// What the answer to ray `i` of the list is worth.
+    pub fn worth_of(&self, i: usize, ray: &Ray, hit: &Hit) -> Worth {
+        let batch = &self.batches[i / BATCH];
+        self.worth(batch, &batch.truths[i % BATCH], ray, hit)
+    }
+
+    /// Whether ray `i` and its answer both hit, but not in the same point within rounding, whichever triangle is named.
+    pub fn astray(&self, i: usize, ray: &Ray, hit: &Hit) -> bool {
+        let truth = &self.batches[i / BATCH].truths[i % BATCH];
+        let off = (f64::from(hit.t) - truth.t).abs();
+        // Both are false for NaN, which is astray.
+        let near = off <= ulp(truth.t) || self.same_point(ray, truth.t, hit.t);
+        truth.is_hit() && hit.is_hit() && !near
+    }
+
+    fn tally(
+        &self,
+        tally: &mut Tally,
+        truths: &TruthBatch,
+        rays: &[Ray],
+        hits: &[Hit],
+        blocked: &[bool],
+    ) {
+        tally.rays += rays.len() as u64;
+        let answers = hits.iter().zip(blocked);
+        for ((truth, ray), (hit, blocked)) in truths.truths.iter().zip(rays).zip(answers) {
+            tally.ties += u64::from(truth.is_tie());
+            tally.occlusion_disagreements += u64::from(hit.is_hit() != *blocked);
+            match self.worth(truths, truth, ray, hit) {
+                Worth::Right => self.add_errors(tally, truth, ray, hit),
+                Worth::RightMiss => {}
+                Worth::Leak => tally.leaks += 1,
+                Worth::Phantom => tally.phantoms += 1,
+                Worth::WrongSurface => tally.wrong_surface += 1,
+                Worth::NeighbourSwap => tally.neighbour_swaps += 1,
+            }
+        }
+    }
+
+    fn worth(&self, truths: &TruthBatch, truth: &Truth, ray: &Ray, hit: &Hit) -> Worth {
+        match (truth.is_hit(), hit.is_hit()) {
+            (false, false) => Worth::RightMiss,
+            (false, true) => Worth::Phantom,
+            (true, false) => Worth::Leak,
+            (true, true) if truths.allows(truth, hit.prim) => Worth::Right,
+            (true, true) if self.same_point(ray, truth.t, hit.t) => Worth::NeighbourSwap,
+            (true, true) => Worth::WrongSurface,
+        }
+    }
+
+    /// Whether the points at `exact` and at `t` are the same within rounding.
+    fn same_point(&self, ray: &Ray, exact: f64, t: f32) -> bool {
+        let off = (f64::from(t) - exact).abs();
+        let length = ray.dir.as_dvec3().length();
+        let coordinates = self.extent.max(f64::from(ray.origin.abs().max_element()));
+        off * length <= SAME_POINT * (coordinates + exact.abs() * length)
+    }
+
+    /// Counts the errors of a right hit.
+    fn add_errors(&self, tally: &mut Tally, truth: &Truth, ray: &Ray, hit: &Hit) {
+        let corners = self.mesh.corners(hit.prim);
+        // JSON has no infinity; an error that is none or no number is as wrong as a number can say.
+        let counted = |error: f64| if error < f64::MAX { error } else { f64::MAX };
+        let off = (f64::from(hit.t) - truth.t).abs();
+        tally.t_ulp.add(counted(off / ulp(truth.t)));
+        let distance = distance_to_plane(ray.at(hit.t), &corners);
+        tally.plane.add(counted(distance / self.diagonal));
+        let [u, v] = weights(ray, &corners);
+        let off = [(hit.u, u), (hit.v, v)].map(|(found, exact)| (f64::from(found) - exact).abs());
+        tally.barycentric.add(counted(off[0]).max(counted(off[1])));
+    }
 }
 
 /// What an answer is worth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::lab) enum Worth {
-    /// Right; the error of t in ulp.
-    Right(f64),
+    /// A triangle of the tie set, at whatever t.
+    Right,
     /// Nothing is hit, and the method says so.
     RightMiss,
     /// See the table above, as the rest.
@@ -68,101 +168,82 @@ pub(in crate::lab) enum Worth {
     NeighbourSwap,
 }
 
-impl Truths {
-    /// Asks the oracle, in the current rayon pool.
-    pub fn new(oracle: &Oracle, mesh: &Mesh, rays: &[Ray]) -> Self {
-        let truth = |ray: &Ray| {
-            let truth = oracle.truth(ray);
-            match (truth.t, truth.tie_set.as_slice()) {
-                (Some(t), [first, others @ ..]) => Truth::Hit {
-                    t: t.to_f64(),
-                    first: *first,
-                    others: others.into(),
-                },
-                _ => Truth::Miss,
-            }
-        };
-        Self {
-            truths: rays.par_iter().map(truth).collect(),
-            extent: f64::from(mesh.bounds().max_abs()),
-        }
+/// Counts of what answers are worth.
+#[derive(Debug, Default)]
+struct Tally {
+    rays: u64,
+    leaks: u64,
+    phantoms: u64,
+    wrong_surface: u64,
+    neighbour_swaps: u64,
+    occlusion_disagreements: u64,
+    ties: u64,
+    t_ulp: Histogram,
+    plane: Histogram,
+    barycentric: Histogram,
+}
+
+impl Tally {
+    fn joined(mut self, other: Self) -> Self {
+        self.rays += other.rays;
+        self.leaks += other.leaks;
+        self.phantoms += other.phantoms;
+        self.wrong_surface += other.wrong_surface;
+        self.neighbour_swaps += other.neighbour_swaps;
+        self.occlusion_disagreements += other.occlusion_disagreements;
+        self.ties += other.ties;
+        self.t_ulp.merge(&other.t_ulp);
+        self.plane.merge(&other.plane);
+        self.barycentric.merge(&other.barycentric);
+        self
     }
 
-    /// Counts what the answers to both queries about the same rays are worth.
-    pub fn judge(&self, rays: &[Ray], hits: &[Hit], blocked: &[bool], offset: f64) -> Accuracy {
-        let mut found = Accuracy {
-            offset,
-            rays: rays.len() as u64,
+    fn accuracy(&self, place: Place) -> Accuracy {
+        let bound = |seen| upper95(seen, self.rays);
+        Accuracy {
+            offset: place.offset,
+            scale: place.scale,
+            rays: self.rays,
+            leaks: self.leaks,
+            phantoms: self.phantoms,
+            wrong_surface: self.wrong_surface,
+            neighbour_swaps: self.neighbour_swaps,
+            occlusion_disagreements: self.occlusion_disagreements,
+            ties: self.ties,
+            t_ulp: ErrorSpread::of(&self.t_ulp),
+            plane: Some(ErrorSpread::of(&self.plane)),
+            barycentric: Some(ErrorSpread::of(&self.barycentric)),
+            upper95: AccuracyBounds {
+                leaks: bound(self.leaks),
+                phantoms: bound(self.phantoms),
+                wrong_surface: bound(self.wrong_surface),
+                neighbour_swaps: bound(self.neighbour_swaps),
+                occlusion_disagreements: bound(self.occlusion_disagreements),
+            },
             ..Accuracy::default()
-        };
-        let mut errors = Vec::new();
-        for ((truth, ray), (hit, blocked)) in
-            self.truths.iter().zip(rays).zip(hits.iter().zip(blocked))
-        {
-            found.occlusion_disagreements += u64::from(hit.is_hit() != *blocked);
-            match self.worth(truth, ray, hit) {
-                Worth::Right(ulp) => errors.push(ulp),
-                Worth::RightMiss => {}
-                Worth::Leak => found.leaks += 1,
-                Worth::Phantom => found.phantoms += 1,
-                Worth::WrongSurface => found.wrong_surface += 1,
-                Worth::NeighbourSwap => found.neighbour_swaps += 1,
-            }
-        }
-        let bound = |seen| upper95(seen, found.rays);
-        found.upper95 = AccuracyBounds {
-            leaks: bound(found.leaks),
-            phantoms: bound(found.phantoms),
-            wrong_surface: bound(found.wrong_surface),
-            neighbour_swaps: bound(found.neighbour_swaps),
-            occlusion_disagreements: bound(found.occlusion_disagreements),
-        };
-        found.t_ulp = UlpSpread::of(errors);
-        found
-    }
-
-    /// What the answer to ray `i` of the list is worth.
-    pub fn worth_of(&self, i: usize, ray: &Ray, hit: &Hit) -> Worth {
-        self.worth(&self.truths[i], ray, hit)
-    }
-
-    /// Whether ray `i` and its answer both hit, but not in the same point within rounding, whichever triangle is named.
-    pub fn astray(&self, i: usize, ray: &Ray, hit: &Hit) -> bool {
-        match &self.truths[i] {
-            Truth::Hit { t, .. } if hit.is_hit() => {
-                let off = (f64::from(hit.t) - t).abs();
-                // Both are false for NaN, which is astray.
-                !(off <= ulp(*t) || self.same_point(ray, *t, off))
-            }
-            _ => false,
         }
     }
+}
 
-    fn worth(&self, truth: &Truth, ray: &Ray, hit: &Hit) -> Worth {
-        match (truth, hit.is_hit()) {
-            (Truth::Miss, false) => Worth::RightMiss,
-            (Truth::Miss, true) => Worth::Phantom,
-            (Truth::Hit { .. }, false) => Worth::Leak,
-            (Truth::Hit { t, first, others }, true) => {
-                // JSON has no infinity; an infinite t is as wrong as a number can say.
-                let off = (f64::from(hit.t) - t).abs().min(f64::MAX);
-                if hit.prim == *first || others.binary_search(&hit.prim).is_ok() {
-                    Worth::Right((off / ulp(*t)).min(f64::MAX))
-                } else if self.same_point(ray, *t, off) {
-                    Worth::NeighbourSwap
-                } else {
-                    Worth::WrongSurface
-                }
-            }
-        }
-    }
+/// Distance of `point` from the plane of a triangle with area, in `f64`.
+fn distance_to_plane(point: Vec3, corners: &[Vec3; 3]) -> f64 {
+    let [a, b, c] = corners.map(Vec3::as_dvec3);
+    let (e1, e2) = (b - a, c - a);
+    // Scaled: products of tiny edges would vanish, and their square.
+    let normal = (e1 / e1.length())
+        .cross(e2 / e2.length())
+        .normalize_or_zero();
+    (point.as_dvec3() - a).dot(normal).abs()
+}
 
-    /// Whether hits at `t` and `off` beside it are the same point within rounding.
-    fn same_point(&self, ray: &Ray, t: f64, off: f64) -> bool {
-        let length = ray.dir.as_dvec3().length();
-        let coordinates = self.extent.max(f64::from(ray.origin.abs().max_element()));
-        off * length <= SAME_POINT * (coordinates + t.abs() * length)
-    }
+/// Barycentric weights of vertices 1 and 2 where the ray's line crosses the triangle's plane, in `f64`.
+fn weights(ray: &Ray, corners: &[Vec3; 3]) -> [f64; 2] {
+    let dir = ray.dir.as_dvec3();
+    let [a, b, c] = corners.map(|v| v.as_dvec3() - ray.origin.as_dvec3());
+    // Each from the edge opposite its vertex, so that a point on an edge has a weight of 0 without cancellation.
+    let [wa, wb, wc] = [(b, c), (c, a), (a, b)].map(|(p, q)| dir.dot(p.cross(q)));
+    let sum = wa + wb + wc;
+    [wb / sum, wc / sum]
 }
 
 /// The distance of neighbouring `f32` around `t`.
@@ -175,10 +256,7 @@ fn ulp(t: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
     use super::*;
-    use crate::geometry::Vec3;
 
     /// Two triangles that share an edge at x = 0 in the plane z = 0, and one behind them at z = 1.
     fn setting() -> (Arc<Mesh>, Oracle) {
@@ -214,7 +292,12 @@ mod tests {
         let rays: Vec<Ray> = answers.iter().map(|a| a.0).collect();
         let hits: Vec<Hit> = answers.iter().map(|a| a.1).collect();
         let blocked: Vec<bool> = answers.iter().map(|a| a.2).collect();
-        Truths::new(&oracle, &mesh, &rays).judge(&rays, &hits, &blocked, 0.0)
+        let mut tally = Tally::default();
+        let truths = Truths::new(&oracle, &mesh, &rays);
+        if let [batch] = truths.batches.as_slice() {
+            truths.tally(&mut tally, batch, &rays, &hits, &blocked);
+        }
+        tally.accuracy(Place::ITS_OWN)
     }
 
     #[test]
@@ -241,6 +324,7 @@ mod tests {
             found.occlusion_disagreements,
         ];
         assert_eq!(counts, [8, 1, 1, 1, 1, 1]);
+        assert_eq!(found.ties, 2);
         assert_eq!(found.wrong(), 3);
         assert!(found.upper95.leaks > 1.0 / 8.0 && found.upper95.leaks < 0.6);
     }
@@ -264,6 +348,34 @@ mod tests {
         assert!(off(f32::INFINITY).is_finite());
         assert_eq!(ulp(0.0), f64::from(f32::from_bits(1)));
         assert_eq!(ulp(1e300), 2f64.powi(104));
+    }
+
+    #[test]
+    fn errors_of_points_and_weights_are_those_of_a_shifted_answer() {
+        // The box of the setting has a diagonal of √(18² + 18² + 1).
+        let diagonal = 649_f64.sqrt();
+        let exact = Hit {
+            u: 0.5,
+            v: 0.25,
+            ..hit(1, 1.0)
+        };
+        let shifted = Hit {
+            t: 1.25,
+            u: 0.53125,
+            ..exact
+        };
+        let ray = Ray::new(Vec3::new(0.25, 0.25, -1.0), Vec3::Z);
+        let found = judged(&[(ray, exact, true), (ray, shifted, true)]);
+        let plane = found.plane.unwrap();
+        assert!((plane.max - 0.25 / diagonal).abs() < 1e-12 && plane.p50 == 0.0);
+        assert_eq!(found.barycentric.unwrap().max, 0.03125);
+        let broken = Hit {
+            t: f32::NAN,
+            u: f32::NAN,
+            ..exact
+        };
+        let found = judged(&[(ray, broken, true)]);
+        assert_eq!(found.barycentric.unwrap().max, f64::MAX);
     }
 
     #[test]

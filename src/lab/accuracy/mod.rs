@@ -1,58 +1,83 @@
 //! Accuracy beside speed: what a method decides wrongly by the oracle, and what it costs, on the same rays.
 //!
 //! ```text
-//! scene ─┬─ offset 0   ─┬─ rays ─── oracle: truths ─┐
-//!        └─ offset 1e4  └─ …                        ├─▶ Accuracy
-//!                          kernel × accelerator ────┤      +
-//!                                                   └─▶ RunRecord (built, counted, checked and timed as in a sweep)
+//! scene ─┬─ place 0 (offset, scale) ─┬─ rays ─── oracle: truths ─┐
+//!        └─ place 1                  └─ …                        ├─▶ Accuracy
+//!                                       kernel × accelerator ────┤      +
+//!                                                                └─▶ RunRecord (built, counted, checked and timed as in a sweep)
 //! ```
 //!
-//! The scene is moved first and rounded to `f32`; the rays are made there. So the oracle judges the numbers that the
-//! method sees, and an error is never one of the input. What counts as what: the table in `judge`. Samples of all runs
-//! on the same rays are interleaved in seeded random order, as in a sweep; judging stands between building and timing.
+//! The scene is scaled and moved first and rounded to `f32`; the rays are made there. So the oracle judges the numbers
+//! that the method sees, and an error is never one of the input. What counts as what: the tables in `judge` and `probe`.
+//! Samples of all runs on the same rays are interleaved in seeded random order, as in a sweep; judging stands between
+//! building and timing.
+//!
+//! **A row** is one [`AccuracyRecord`]: one configuration (scene, accelerator with n, kernel, ray set, threads) at one
+//! [`Place`], with its speed and one [`Accuracy`]. In a report it is a run whose `accuracy` is present, which holds the
+//! place as `offset` and `scale`. Every rate counts all rays of the set; the speed is measured on as many of them as
+//! fit into a sample. Rows stand in the order of [`AccuracyPlan::runs`], whatever the order in which they ended.
+//!
+//! **How much is kept.** 32 bytes a ray and 16 a truth, for one ray set at a time: the oracle is asked once for all kernels
+//! in all accelerators. Answers are judged batch by batch and forgotten; percentiles come from histograms.
 //!
 //! **Known bias.** What is judged is kernel and accelerator together; with an accelerator that obeys its rule it is the
 //! kernel, except that a phantom outside its triangle's cell may be met by one structure and not by another.
 
+mod experiment;
 pub(in crate::lab) mod judge;
-mod moved;
+mod place;
+mod probe;
 mod record;
-
-pub use record::{Accuracy, AccuracyBounds, UlpSpread};
-
-use std::sync::Arc;
-
-use rand_core::Rng;
-use rand_pcg::Pcg32;
-
-use crate::oracle::Oracle;
-use crate::scene::{self, Scene};
-use crate::trace::{self, RaySet};
-
-use super::judge::Judge;
-use super::live::{Live, Setting};
-use super::machine::Pools;
-use super::sampling::stop_reason;
-use super::{Control, LabError, Plan, RunConfig, RunRecord, StopReason};
+mod starts;
+mod truth;
 
 pub(super) use judge::Truths;
 
-/// What is judged: the runs of a plan, at each offset.
+pub use experiment::{accuracy, accuracy_from};
+pub use place::Place;
+pub use record::{Accuracy, AccuracyBounds, ErrorSpread, Rate, SelfHits};
+pub use starts::StartRule;
+
+use super::{LabError, Plan, RunConfig, RunRecord};
+
+/// What is judged: the runs of a plan, at each place.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AccuracyPlan {
     /// Scenes, accelerators, kernels, ray sets and how they are timed.
     pub plan: Plan,
     /// How far the scene is moved along each axis: finite, not negative.
     pub offsets: Vec<f64>,
+    /// Factors by which the scene is scaled about the world's origin, before it is moved: finite, positive.
+    pub scales: Vec<f64>,
+}
+
+/// A configuration in a place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlacedRun {
+    /// Hash of configuration and place: that of the configuration itself in the scene's own place.
+    pub id: String,
+    /// Where.
+    pub place: Place,
+    /// What.
+    pub config: RunConfig,
 }
 
 /// A run that was judged and timed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AccuracyRecord {
-    /// As of a sweep; its id knows the offset.
+    /// As of a sweep; its id knows the place.
     pub run: RunRecord,
     /// What the oracle found.
     pub accuracy: Accuracy,
+}
+
+/// How much was judged, and how fast.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Judging {
+    /// Rays that the oracle was asked about, and the seconds that took on all cores.
+    pub truths: (u64, f64),
+    /// Rays whose answers of both queries were traced and judged, and the seconds.
+    pub answers: (u64, f64),
 }
 
 /// What a running experiment tells.
@@ -64,6 +89,13 @@ pub enum AccuracyEvent {
         done: f64,
         /// What is done now.
         what: String,
+    },
+    /// A sample was taken.
+    Sampled {
+        /// The run.
+        id: String,
+        /// Its speed.
+        mrays_per_s: f64,
     },
     /// A run is complete.
     Finished {
@@ -79,6 +111,8 @@ pub enum AccuracyEvent {
     Ended {
         /// Whether it was stopped.
         stopped: bool,
+        /// How much was judged.
+        judging: Judging,
     },
 }
 
@@ -86,271 +120,85 @@ impl AccuracyPlan {
     /// Checks everything that can be checked before the first run.
     ///
     /// # Errors
-    /// As [`Plan::check`]; no offset, or one that is negative or no number.
+    /// As [`Plan::check`]; no offset or scale, one that is out of bounds or no number.
     pub fn check(&self) -> Result<(), LabError> {
-        if self.offsets.is_empty() {
-            return Err(LabError::Nothing { what: "offset" });
+        for (what, list) in [("offset", &self.offsets), ("scale", &self.scales)] {
+            if list.is_empty() {
+                return Err(LabError::Nothing { what });
+            }
         }
-        if let Some(&bad) = self.offsets.iter().find(|o| !(o.is_finite() && **o >= 0.0)) {
+        let offset = |o: &&f64| !(o.is_finite() && **o >= 0.0);
+        if let Some(bad) = self.offsets.iter().find(offset) {
             return Err(LabError::Offset(bad.to_string()));
+        }
+        let scale = |s: &&f64| !(s.is_finite() && **s > 0.0);
+        if let Some(bad) = self.scales.iter().find(scale) {
+            return Err(LabError::Scale(bad.to_string()));
         }
         self.plan.check()
     }
-}
 
-/// Judges and times the runs of `plan` at each offset, by scene, offset, rays, kernel and accelerator, and tells `sink`
-/// what happens. Runs whose samples were not complete when `control` stopped it are left out.
-///
-/// # Errors
-/// The plan cannot be carried out at all; a run that fails is told and passed over.
-pub fn accuracy(
-    plan: &AccuracyPlan,
-    control: &Control,
-    sink: &mut dyn FnMut(AccuracyEvent),
-) -> Result<(), LabError> {
-    plan.check()?;
-    let runs = plan.plan.runs();
-    let mut experiment = Experiment {
-        plan: &plan.plan,
-        pools: &Pools::new(&plan.plan.threads)?,
-        control,
-        random: Pcg32::new(plan.plan.seed, 12),
-        complete: 0,
-        all: runs.len() * plan.offsets.len(),
-        sink,
-    };
-    for of_scene in runs.chunk_by(|a, b| a.scene == b.scene) {
-        let still = scene::load(&of_scene[0].scene)?;
-        for &offset in &plan.offsets {
-            experiment.place(&still, offset, of_scene);
-        }
-    }
-    let stopped = experiment.complete < experiment.all;
-    (experiment.sink)(AccuracyEvent::Ended { stopped });
-    Ok(())
-}
-
-/// A scene in its place.
-struct Place {
-    scene: Scene,
-    offset: f64,
-    oracle: Arc<Oracle>,
-}
-
-/// Rays with their truths.
-struct Course<'a> {
-    place: &'a Place,
-    set: Arc<RaySet>,
-    truths: Truths,
-}
-
-struct Experiment<'a> {
-    plan: &'a Plan,
-    pools: &'a Pools,
-    control: &'a Control,
-    random: Pcg32,
-    /// Runs that are complete or failed.
-    complete: usize,
-    all: usize,
-    sink: &'a mut dyn FnMut(AccuracyEvent),
-}
-
-impl Experiment<'_> {
-    fn place(&mut self, still: &Scene, offset: f64, runs: &[RunConfig]) {
-        let scene = match moved::scene(still, offset) {
-            Ok(scene) => scene,
-            Err(why) => {
-                let name = &runs[0].scene;
-                let why = format!("'{name}' cannot be moved by {offset}: {why}");
-                return self.fail(runs.len(), why);
-            }
-        };
-        let place = Place {
-            oracle: Arc::new(Oracle::new(&scene.mesh)),
-            scene,
-            offset,
-        };
-        for on_rays in runs.chunk_by(|a, b| a.rays == b.rays) {
-            if self.control.stopped() {
-                return;
-            }
-            match self.course(&place, &on_rays[0]) {
-                Ok(course) => self.on_course(&course, on_rays),
-                Err(why) => self.fail(on_rays.len(), why),
+    /// All places: for each scale each offset, each once.
+    #[must_use]
+    pub fn places(&self) -> Vec<Place> {
+        let mut places: Vec<Place> = Vec::new();
+        for &scale in &self.scales {
+            for &offset in &self.offsets {
+                let place = Place { offset, scale };
+                if !places.contains(&place) {
+                    places.push(place);
+                }
             }
         }
+        places
     }
 
-    /// Rays and their truths.
-    fn course<'p>(&mut self, place: &'p Place, run: &RunConfig) -> Result<Course<'p>, String> {
-        let (scene, offset) = (&place.scene, place.offset);
-        let name = format!("{} rays of {} at {offset}", run.rays, run.scene);
-        self.tell(&format!("asking the oracle about {name}"));
-        let all = self.pools.all();
-        let set = all
-            .install(|| moved::rays(scene, offset, &run.rays, run.ray_count, run.seed))
-            .map_err(|why| why.to_string())?;
-        if set.rays.is_empty() {
-            return Err(format!("there are no {name}: choose another set or scene"));
-        }
-        let truths = all.install(|| Truths::new(&place.oracle, &scene.mesh, &set.rays));
-        Ok(Course {
+    /// Its runs: by scene, place, rays, kernel, threads, accelerator, n.
+    #[must_use]
+    pub fn runs(&self) -> Vec<PlacedRun> {
+        let (runs, places) = (self.plan.runs(), self.places());
+        let placed = |place: Place, config: &RunConfig| PlacedRun {
+            id: id(config, place),
             place,
-            set: Arc::new(set),
-            truths,
-        })
-    }
-
-    /// Judges and times all runs on the same rays, as many at once as fit into memory together.
-    fn on_course(&mut self, course: &Course, runs: &[RunConfig]) {
-        let mut live: Vec<(Live, Accuracy)> = Vec::new();
-        let mut bytes = 0;
-        for same in runs.chunk_by(|a, b| a.kernel == b.kernel && a.threads == b.threads) {
-            let judge = match self.brute_force(course, &same[0]) {
-                Ok(judge) => judge,
-                Err(why) => {
-                    self.fail(same.len(), why);
-                    continue;
-                }
-            };
-            for run in same {
-                if self.control.stopped() {
-                    return;
-                }
-                self.tell(&format!(
-                    "judging {} in {} on {}",
-                    run.kernel.name, run.accel.name, run.rays
-                ));
-                match self.prepare(course, run, &judge) {
-                    Ok(one) => {
-                        bytes += one.0.bytes();
-                        live.push(one);
-                    }
-                    Err(why) => self.fail(1, why),
-                }
-                if bytes > self.plan.memory_limit {
-                    self.sample(std::mem::take(&mut live));
-                    bytes = 0;
-                }
-            }
-        }
-        self.sample(live);
-    }
-
-    fn brute_force(&self, course: &Course, run: &RunConfig) -> Result<Judge, String> {
-        let place = course.place;
-        let (budget, seed) = (&self.plan.budget, self.plan.seed);
-        let judge = self.pools.all().install(|| {
-            let mesh = &place.scene.mesh;
-            Judge::new(mesh, &place.oracle, &run.kernel, &course.set, budget, seed)
-        });
-        judge.map_err(|why| why.to_string())
-    }
-
-    /// Builds, counts and checks as a sweep does, and asks both queries of the rays that will be timed.
-    fn prepare(
-        &self,
-        course: &Course,
-        run: &RunConfig,
-        judge: &Judge,
-    ) -> Result<(Live, Accuracy), String> {
-        let place = course.place;
-        let setting = Setting {
-            plan: self.plan,
-            pools: self.pools,
-            mesh: &place.scene.mesh,
-            set: &course.set,
-            judge,
-            threads: run.threads,
+            config: config.clone(),
         };
-        let live = Live::prepare(id(run, place.offset), run, &setting)?;
-        let (accel, rays) = (live.accel(), live.rays());
-        let found = self.pools.all().install(|| {
-            let hits = trace::closest(accel, rays);
-            let blocked = trace::occluded(accel, rays);
-            let of_sample;
-            let truths = if rays.len() == course.set.rays.len() {
-                &course.truths
-            } else {
-                of_sample = Truths::new(&place.oracle, &place.scene.mesh, rays);
-                &of_sample
-            };
-            truths.judge(rays, &hits, &blocked, place.offset)
-        });
-        Ok((live, found))
-    }
-
-    /// Takes a sample of each run in turn, in a new random order each round, until all are sampled enough.
-    fn sample(&mut self, mut live: Vec<(Live, Accuracy)>) {
-        let budget = &self.plan.budget;
-        while !live.is_empty() {
-            for i in (1..live.len()).rev() {
-                let pick = (u64::from(self.random.next_u32()) * (i as u64 + 1)) >> 32;
-                live.swap(i, pick as usize);
-            }
-            for (run, _) in &mut live {
-                if self.control.stopped() {
-                    return;
-                }
-                self.control.set_sampling(true);
-                let pool = self.pools.of(run.record.config.threads);
-                let (speed, took) = run.time(pool, budget.sample_seconds);
-                self.control.set_sampling(false);
-                run.speeds.push(speed);
-                run.seconds += took;
-            }
-            self.tell("measuring");
-            let mut going = Vec::with_capacity(live.len());
-            for (run, found) in live {
-                match stop_reason(&run.speeds, run.seconds, budget, self.plan.seed) {
-                    None => going.push((run, found)),
-                    Some(why) => self.finish(run, found, why),
-                }
-            }
-            live = going;
-        }
-    }
-
-    fn finish(&mut self, live: Live, accuracy: Accuracy, why: StopReason) {
-        self.complete += 1;
-        let run = live.finish(why);
-        let record = Box::new(AccuracyRecord { run, accuracy });
-        (self.sink)(AccuracyEvent::Finished { record });
-    }
-
-    fn fail(&mut self, runs: usize, why: String) {
-        self.complete += runs;
-        (self.sink)(AccuracyEvent::Failed { why });
-    }
-
-    fn tell(&mut self, what: &str) {
-        (self.sink)(AccuracyEvent::Doing {
-            done: self.complete as f64 / self.all.max(1) as f64,
-            what: what.to_owned(),
-        });
+        runs.chunk_by(|a, b| a.scene == b.scene)
+            .flat_map(|of_scene| {
+                let at = |place: &Place| of_scene.iter().map(|run| placed(*place, run)).collect();
+                places.iter().map(at).collect::<Vec<Vec<PlacedRun>>>()
+            })
+            .flatten()
+            .collect()
     }
 }
 
-/// The hash of a configuration in its place: that of the configuration itself where it was not moved.
-fn id(run: &RunConfig, offset: f64) -> String {
-    if offset == 0.0 {
+/// The hash of a configuration in its place.
+fn id(run: &RunConfig, place: Place) -> String {
+    if place == Place::ITS_OWN {
         return run.id();
     }
     let mut moved = run.clone();
-    moved.rays = format!("{} moved by {offset}", run.rays);
+    if place.scale != 1.0 {
+        moved.rays = format!("{} scaled by {}", moved.rays, place.scale);
+    }
+    if place.offset != 0.0 {
+        moved.rays = format!("{} moved by {}", moved.rays, place.offset);
+    }
     moved.id()
 }
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+
     use super::*;
     use crate::kernel;
-    use crate::lab::Budget;
+    use crate::lab::{Budget, Control, Done};
 
     fn plan(kernels: &[&str], offsets: &[f64]) -> AccuracyPlan {
         AccuracyPlan {
             plan: Plan {
-                scenes: vec!["sphereflake:1".to_owned()],
+                scenes: vec!["shells:1,3".to_owned()],
                 accels: vec![crate::accel::parse("bvh").unwrap()],
                 kernels: kernels.iter().map(|k| kernel::parse(k).unwrap()).collect(),
                 rays: vec!["edge".to_owned()],
@@ -366,6 +214,7 @@ mod tests {
                 ..Plan::default()
             },
             offsets: offsets.to_vec(),
+            scales: vec![1.0],
         }
     }
 
@@ -388,16 +237,16 @@ mod tests {
             records.iter().find(is).unwrap().accuracy
         });
         assert_eq!((woop.rays, woop.offset), (2000, 1e4));
-        // Only rims, where a ray touches the mesh from beside, are left to a watertight method.
-        assert!(woop.wrong() < 40, "{woop:?}");
-        assert!(sheet.wrong() > woop.wrong(), "{sheet:?} {woop:?}");
+        assert_eq!(woop.wrong(), 0, "{woop:?}");
+        assert!(woop.upper95.leaks < 3.0 / 2000.0);
+        assert!(sheet.wrong() > 20, "{sheet:?}");
+        assert_eq!(woop.self_hits.unwrap()[4].rate.seen, 0);
     }
 
     #[test]
     fn every_run_has_an_id_of_its_own_and_samples() {
         let records = found(&plan(&["woop", "moller-trumbore"], &[0.0, 1.0]));
-        let ids: std::collections::BTreeSet<&str> =
-            records.iter().map(|r| r.run.id.as_str()).collect();
+        let ids: BTreeSet<&str> = records.iter().map(|r| r.run.id.as_str()).collect();
         assert_eq!((records.len(), ids.len()), (4, 4));
         assert!(
             records
@@ -407,12 +256,58 @@ mod tests {
     }
 
     #[test]
+    fn a_scene_of_any_size_is_judged_the_same_as_long_as_f32_holds_it() {
+        let mut plan = plan(&["woop", "moller-trumbore"], &[0.0]);
+        // At 2^-40 the determinants of Möller and Trumbore would already be subnormal.
+        plan.scales = vec![2_f64.powi(-20), 1.0, 2_f64.powi(20)];
+        let records = found(&plan);
+        assert_eq!(records.len(), 6);
+        for of_kernel in ["woop", "moller-trumbore"] {
+            let of = records
+                .iter()
+                .filter(|r| r.run.config.kernel.name == of_kernel);
+            let wrong: BTreeSet<u64> = of.map(|r| r.accuracy.wrong()).collect();
+            assert_eq!(wrong.len(), 1, "{of_kernel} {wrong:?}");
+        }
+    }
+
+    #[test]
+    fn runs_stand_by_scene_place_and_kernel_and_finished_ones_are_not_made_again() {
+        let mut plan = plan(&["woop", "moller-trumbore"], &[0.0, 1.0]);
+        plan.scales.push(2.0);
+        let runs = plan.runs();
+        let places: Vec<(f64, f64)> = runs
+            .iter()
+            .map(|r| (r.place.scale, r.place.offset))
+            .collect();
+        let expected = [(1.0, 0.0), (1.0, 1.0), (2.0, 0.0), (2.0, 1.0)];
+        assert_eq!(places, expected.map(|p| [p; 2]).concat());
+        let mut finished: BTreeSet<String> = runs.iter().map(|r| r.id.clone()).collect();
+        assert_eq!(finished.len(), 8);
+        finished.remove(&runs[5].id);
+        let samples = [(runs[5].id.clone(), vec![3.5])].into();
+        let mut made = Vec::new();
+        let done = Done { finished, samples };
+        accuracy_from(&plan, &done, &Control::default(), &mut |event| {
+            if let AccuracyEvent::Finished { record } = event {
+                made.push(record);
+            }
+        })
+        .unwrap();
+        assert_eq!(made.len(), 1);
+        assert_eq!(
+            (&made[0].run.id, made[0].run.mrays_per_s[0]),
+            (&runs[5].id, 3.5)
+        );
+    }
+
+    #[test]
     fn a_stopped_experiment_tells_so_and_impossible_offsets_are_refused() {
         let control = Control::default();
         control.stop();
         let mut told = None;
         accuracy(&plan(&["woop"], &[0.0]), &control, &mut |event| {
-            if let AccuracyEvent::Ended { stopped } = event {
+            if let AccuracyEvent::Ended { stopped, .. } = event {
                 told = Some(stopped);
             }
         })
@@ -420,6 +315,12 @@ mod tests {
         assert_eq!(told, Some(true));
         for (offsets, part) in [(vec![], "no offset"), (vec![f64::NAN], "NaN")] {
             let why = plan(&["woop"], &offsets).check().unwrap_err().to_string();
+            assert!(why.contains(part), "{why}");
+        }
+        for (scales, part) in [(vec![], "no scale"), (vec![0.0], "by 0")] {
+            let mut plan = plan(&["woop"], &[0.0]);
+            plan.scales = scales;
+            let why = plan.check().unwrap_err().to_string();
             assert!(why.contains(part), "{why}");
         }
     }

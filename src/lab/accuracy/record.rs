@@ -1,13 +1,21 @@
-//! What is counted of the rays on which a kernel was judged.
+//! What is found of a kernel on some rays.
 
 use serde::{Deserialize, Serialize};
 
-/// How often a kernel was wrong on some rays, by the oracle; `judge` beside this file defines each word.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+use crate::stats::{Histogram, upper95};
+
+use super::StartRule;
+
+/// How often a kernel was wrong on some rays, and by how much, by the oracle; `judge` beside this file defines each
+/// word, `probe` those of the last three fields.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Accuracy {
     /// How far scene and rays were moved from their place, along each axis.
     #[serde(default)]
     pub offset: f64,
+    /// How much larger than itself the scene was, before it was moved.
+    #[serde(default = "one")]
+    pub scale: f64,
     /// Rays that were judged.
     pub rays: u64,
     /// The ray hits, the method misses.
@@ -21,10 +29,57 @@ pub struct Accuracy {
     /// The closest-hit query hits and the occlusion query does not, or the other way round.
     #[serde(default)]
     pub occlusion_disagreements: u64,
+    /// Rays whose nearest hit lies in several triangles: exactly on an edge or vertex. No error; what was asked.
+    #[serde(default)]
+    pub ties: u64,
     /// Error of t over right hits, in units of the last place.
-    pub t_ulp: UlpSpread,
+    pub t_ulp: ErrorSpread,
+    /// Distance of the point origin + t·direction, in `f32`, from the true plane over right hits, as a share of the
+    /// diagonal of the scene's box.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plane: Option<ErrorSpread>,
+    /// Error of the barycentric weights over right hits, the greater of both.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub barycentric: Option<ErrorSpread>,
     /// Upper 95 % bounds of the rates (Clopper and Pearson, one-sided; at most 3 / rays where none was seen).
     pub upper95: AccuracyBounds,
+    /// Secondary rays that meet the triangle they leave, by the rule that places their start.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub self_hits: Option<[SelfHits; StartRule::ALL.len()]>,
+    /// Rays that are decided otherwise where each triangle names its corners from the next one on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub vertex_rotation: Option<Rate>,
+    /// Rays that are decided otherwise in an equal scene elsewhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub translation: Option<Rate>,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+impl Default for Accuracy {
+    /// Nothing judged, in the scene's own place and size.
+    fn default() -> Self {
+        Self {
+            offset: 0.0,
+            scale: 1.0,
+            rays: 0,
+            leaks: 0,
+            phantoms: 0,
+            wrong_surface: 0,
+            neighbour_swaps: 0,
+            occlusion_disagreements: 0,
+            ties: 0,
+            t_ulp: ErrorSpread::default(),
+            plane: None,
+            barycentric: None,
+            upper95: AccuracyBounds::default(),
+            self_hits: None,
+            vertex_rotation: None,
+            translation: None,
+        }
+    }
 }
 
 impl Accuracy {
@@ -41,10 +96,49 @@ impl Accuracy {
     }
 }
 
-/// Percentiles of an error in units of the last place.
+/// How often something was seen.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct UlpSpread {
-    /// Median.
+pub struct Rate {
+    /// Of how many rays.
+    pub rays: u64,
+    /// On how many of them.
+    pub seen: u64,
+    /// Upper 95 % bound of the rate, 0 to 1.
+    pub upper95: f64,
+}
+
+impl Rate {
+    /// `seen` of `rays`, with the bound.
+    #[must_use]
+    pub fn of(seen: u64, rays: u64) -> Self {
+        Self {
+            rays,
+            seen,
+            upper95: upper95(seen, rays),
+        }
+    }
+
+    /// The share itself, 0 to 1; 0 where there were no rays.
+    #[must_use]
+    pub fn share(&self) -> f64 {
+        self.seen as f64 / self.rays.max(1) as f64
+    }
+}
+
+/// How often secondary rays met the triangle that they left.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct SelfHits {
+    /// How their starts were placed.
+    pub rule: StartRule,
+    /// How often.
+    #[serde(flatten)]
+    pub rate: Rate,
+}
+
+/// Percentiles of an error.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct ErrorSpread {
+    /// Median; this and the next at most 0.4 % too low.
     pub p50: f64,
     /// 99th percentile.
     pub p99: f64,
@@ -52,19 +146,14 @@ pub struct UlpSpread {
     pub max: f64,
 }
 
-impl UlpSpread {
-    /// Of finite errors, by nearest rank, so that a percentile is an error that occurs; zero where there are none.
+impl ErrorSpread {
+    /// Of what was counted; zero where nothing was.
     #[must_use]
-    pub fn of(mut errors: Vec<f64>) -> Self {
-        errors.sort_unstable_by(f64::total_cmp);
-        let Some(&max) = errors.last() else {
-            return Self::default();
-        };
-        let rank = |percent: usize| errors[(errors.len() * percent).div_ceil(100) - 1];
+    pub fn of(errors: &Histogram) -> Self {
         Self {
-            p50: rank(50),
-            p99: rank(99),
-            max,
+            p50: errors.percentile(50),
+            p99: errors.percentile(99),
+            max: errors.max(),
         }
     }
 }

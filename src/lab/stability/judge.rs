@@ -91,7 +91,7 @@ impl Bench {
             Worth::Leak => Some(Fault::Leak),
             Worth::Phantom => Some(Fault::Phantom),
             Worth::WrongSurface => Some(Fault::WrongSurface),
-            Worth::Right(_) => self.truths.astray(i, ray, hit).then_some(Fault::Astray),
+            Worth::Right => self.truths.astray(i, ray, hit).then_some(Fault::Astray),
             Worth::RightMiss | Worth::NeighbourSwap => None,
         }
     }

@@ -11,7 +11,8 @@
 //! | `cost` | build time and memory |
 //! | `overview` | the speeds of all combinations as small multiples, where there is more than one |
 //! | `pareto` | speed against wrong decisions, where the oracle judged |
-//! | `drift` | wrong decisions and error of t against the offset, where it judged at more than one |
+//! | `drift` | wrong decisions and error of t against the offset or the scale, where it judged at more than one |
+//! | `tuned` | wrong decisions and swaps against a kernel's parameter, where it judged several values |
 //!
 //! Equal reports give equal bytes: nothing here knows the time, the machine or its fonts.
 
@@ -20,9 +21,11 @@ use std::path::{Path, PathBuf};
 
 use super::Report;
 use super::export::{ExportError, make, put};
-use super::judged::{Course, courses, offsets};
+use super::judged::{Along, Course, Tuned, courses, drifts, places, tuned};
 use super::series::{PanelKey, panels};
+use crate::lab::Place;
 
+mod against;
 mod axis;
 mod canvas;
 mod curves;
@@ -38,6 +41,7 @@ mod pareto;
 mod plane;
 mod raster;
 mod theme;
+mod tuned;
 
 pub use figure::Kind;
 
@@ -119,10 +123,12 @@ pub enum Subject {
     Overview,
     /// One combination.
     One(PanelKey, Kind),
-    /// Speed against wrong decisions on one course, at an offset.
-    Pareto(Course, f64),
-    /// Error on one course against the offset.
-    Drift(Course),
+    /// Speed against wrong decisions on one course, at a place.
+    Pareto(Course, Place),
+    /// Error on one course against the offset or the scale.
+    Drift(Course, Along),
+    /// Error on one course against a kernel's parameter.
+    Tuned(Course, Tuned),
 }
 
 /// One figure of `report` as SVG that follows the reader's preference for light or dark; `None` where the report has no
@@ -141,8 +147,9 @@ fn drawn(report: &Report, subject: &Subject, style: Style) -> Result<Option<Stri
     match subject {
         Subject::Overview => overview::svg(report, style),
         Subject::One(key, kind) => figure::svg(report, key, *kind, style),
-        Subject::Pareto(course, offset) => pareto::svg(report, course, *offset, style),
-        Subject::Drift(course) => drift::svg(report, course, style),
+        Subject::Pareto(course, place) => pareto::svg(report, course, *place, style),
+        Subject::Drift(course, along) => drift::svg(report, course, *along, style),
+        Subject::Tuned(course, tuned) => tuned::svg(report, course, tuned, style),
     }
 }
 
@@ -161,11 +168,29 @@ fn figures(report: &Report) -> Vec<(String, Subject)> {
         let parts = [last(&course.scene), last(&course.rays)];
         let stem = [sanitised(&parts[0]), sanitised(&parts[1])].join("-");
         let stem = distinct(format!("{stem}-{}t", course.threads), &mut used);
-        for offset in offsets(&report.runs, &course) {
-            let name = format!("pareto-{stem}-{}", sanitised(&offset.to_string()));
-            figures.push((name, Subject::Pareto(course.clone(), offset)));
+        let scaled = |scale: f64| match scale {
+            1.0 => String::new(),
+            scale => format!("-x{}", sanitised(&scale.to_string())),
+        };
+        for place in places(&report.runs, &course) {
+            let offset = sanitised(&place.offset.to_string());
+            let name = format!("pareto-{stem}-{offset}{}", scaled(place.scale));
+            figures.push((name, Subject::Pareto(course.clone(), place)));
         }
-        figures.push((format!("drift-{stem}"), Subject::Drift(course)));
+        for along in drifts(&report.runs, &course) {
+            let name = match along {
+                Along::Offset { scale } => format!("drift-{stem}{}", scaled(scale)),
+                Along::Scale { offset } => {
+                    format!("scale-{stem}-{}", sanitised(&offset.to_string()))
+                }
+            };
+            figures.push((name, Subject::Drift(course.clone(), along)));
+        }
+        for tuned in tuned(&report.runs, &course) {
+            let method = sanitised(&format!("{}-{}", tuned.kernel, tuned.key));
+            let name = distinct(format!("tuned-{method}-{stem}"), &mut used);
+            figures.push((name, Subject::Tuned(course.clone(), tuned)));
+        }
     }
     figures
 }

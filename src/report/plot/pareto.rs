@@ -9,6 +9,7 @@
 //!     +------------------------- Mrays/s
 //! ```
 
+use crate::lab::Place;
 use crate::report::Report;
 use crate::report::judged::{Course, Judged, labels, points};
 
@@ -24,20 +25,22 @@ use super::theme::{Look, Theme};
 const TALL: f64 = 360.0;
 /// Title, subtitle and the name of the vertical axis.
 const TOP: f64 = 84.0;
+/// How near a line a label may come.
+const LINE: f64 = 1.5;
 /// Ticks and the name of the horizontal axis.
 const BELOW: f64 = 44.0;
 
-/// The chart of one course at one offset as SVG; `None` where nothing was judged there.
+/// The chart of one course at one place as SVG; `None` where nothing was judged there.
 ///
 /// # Errors
 /// What could not be drawn.
 pub(super) fn svg(
     report: &Report,
     course: &Course,
-    offset: f64,
+    place: Place,
     style: Style,
 ) -> Result<Option<String>, String> {
-    let points = points(&report.runs, course, offset);
+    let points = points(&report.runs, course, place);
     if points.is_empty() {
         return Ok(None);
     }
@@ -53,7 +56,7 @@ pub(super) fn svg(
     let height = (foot + note.len() as f64 * note::PITCH + 6.0).ceil();
     let mut drawn = String::new();
     let mut canvas = Canvas::new(&mut drawn, WIDTH, height, theme.ground);
-    let name = heading(&mut canvas, theme, report, course, Some(offset));
+    let name = heading(&mut canvas, theme, report, course, &whereabouts(place));
     axis_name(
         &mut canvas,
         theme,
@@ -66,7 +69,7 @@ pub(super) fn svg(
     let at = (middle, TOP + tall + 36.0);
     canvas.text("speed (Mrays/s)", at, Anchor::Middle, label_face(theme));
     let mut taken = floor(&mut canvas, theme, &plane, &points);
-    front(&mut canvas, theme, &plane, &points);
+    taken.extend(front(&mut canvas, theme, &plane, &points));
     let known = labels(&report.runs);
     draw_points(&mut canvas, theme, &plane, &points, &known);
     taken.extend(points.iter().flat_map(|p| signs(&plane, p)));
@@ -82,13 +85,26 @@ pub(super) fn svg(
     Ok(Some(finish(&drawn, &widths, &head)))
 }
 
+/// Where a scene was judged, as a subtitle goes on.
+fn whereabouts(place: Place) -> String {
+    let scaled = match place.scale {
+        1.0 => String::new(),
+        scale => format!(", scaled by {}", number(scale)),
+    };
+    match (place.offset, scaled.as_str()) {
+        (0.0, "") => ", in its place".to_owned(),
+        (0.0, scaled) => scaled.to_owned(),
+        (offset, scaled) => format!("{scaled}, moved by {} along each axis", number(offset)),
+    }
+}
+
 /// Title and subtitle of a chart of judged runs; returns the title.
 pub(super) fn heading(
     canvas: &mut Canvas,
     theme: &Theme,
     report: &Report,
     course: &Course,
-    offset: Option<f64>,
+    further: &str,
 ) -> String {
     let face = Face {
         size: TITLE,
@@ -113,17 +129,12 @@ pub(super) fn heading(
         let (triangles, rays) = (r.triangles as f64, r.ray_count as f64);
         format!("{} triangles, {} rays", number(triangles), number(rays))
     });
-    let moved = match offset {
-        Some(0.0) => ", in its place".to_owned(),
-        Some(x) => format!(", moved by {} along each axis", number(x)),
-        None => String::new(),
-    };
     let quiet = Face {
         colour: theme.muted,
         ..label_face(theme)
     };
     canvas.text(
-        &format!("{facts}{moved}"),
+        &format!("{facts}{further}"),
         (MARGIN, 44.0),
         Anchor::Start,
         quiet,
@@ -171,7 +182,7 @@ fn place(plane: &Plane, point: &Judged) -> At {
     plane.at(point.speed[0], point.accuracy.wrong_rate())
 }
 
-/// The line of three by N with its words; returns the place that these take.
+/// The line of three by N with its words; returns the places that both take.
 fn floor(canvas: &mut Canvas, theme: &Theme, plane: &Plane, points: &[Judged]) -> Vec<Box2> {
     let rate = three_of(points);
     let y = plane.at(plane.x.lo, rate).1;
@@ -185,16 +196,18 @@ fn floor(canvas: &mut Canvas, theme: &Theme, plane: &Plane, points: &[Judged]) -
     let text = format!("3/N = {}: none seen is at most this", measured(rate));
     let at = (plane.right - 6.0, y - 5.0);
     canvas.text(&text, at, Anchor::End, face);
-    vec![Box2 {
+    let words = Box2 {
         left: at.0 - face.width(&text),
         right: at.0,
         top: at.1 - face.size,
         bottom: at.1 + 8.0,
-    }]
+    };
+    vec![words, Box2::along((plane.left, y), (plane.right, y))]
 }
 
-/// The stairs of the front: what the fastest method within each rate of wrong decisions is.
-fn front(canvas: &mut Canvas, theme: &Theme, plane: &Plane, points: &[Judged]) {
+/// The stairs of the front: what the fastest method within each rate of wrong decisions is; returns the places that
+/// they take.
+fn front(canvas: &mut Canvas, theme: &Theme, plane: &Plane, points: &[Judged]) -> Vec<Box2> {
     let mut stairs: Vec<At> = points
         .iter()
         .filter(|p| p.front)
@@ -202,7 +215,7 @@ fn front(canvas: &mut Canvas, theme: &Theme, plane: &Plane, points: &[Judged]) {
         .collect();
     stairs.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (Some(first), Some(last)) = (stairs.first().copied(), stairs.last().copied()) else {
-        return;
+        return Vec::new();
     };
     let mut line = vec![(plane.left, first.1)];
     for (x, y) in stairs {
@@ -215,6 +228,7 @@ fn front(canvas: &mut Canvas, theme: &Theme, plane: &Plane, points: &[Judged]) {
     }
     line.push((last.0, plane.top));
     canvas.line(&line, theme.muted, 1.4, &[]);
+    line.windows(2).map(|w| Box2::along(w[0], w[1])).collect()
 }
 
 fn draw_points(
@@ -276,6 +290,16 @@ impl Box2 {
             right: x + reach,
             top: y - reach,
             bottom: y + reach,
+        }
+    }
+
+    /// Around a horizontal or vertical line.
+    fn along(a: At, b: At) -> Self {
+        Self {
+            left: a.0.min(b.0) - LINE,
+            right: a.0.max(b.0) + LINE,
+            top: a.1.min(b.1) - LINE,
+            bottom: a.1.max(b.1) + LINE,
         }
     }
 

@@ -3,7 +3,7 @@
 
 use std::collections::HashSet;
 
-use resvg::usvg::{Group, Node, Options, Rect, TextChunk, Tree};
+use resvg::usvg::{Group, Node, Options, Paint, Rect, Stroke, TextChunk, Tree};
 
 use super::*;
 use crate::report::fixture;
@@ -334,4 +334,88 @@ fn judged_runs_get_a_pareto_chart_an_offset_and_one_of_error_with_every_method_n
             );
         }
     }
+}
+
+#[test]
+fn a_parameter_and_a_scale_with_several_values_get_charts_of_their_own() {
+    let named = |(name, _): &(&str, Report)| *name == "tuned";
+    let (_, report) = cases::all().into_iter().find(named).unwrap();
+    let figures = figures(&report);
+    let names: Vec<&str> = figures.iter().map(|(name, _)| name.as_str()).collect();
+    let scale = "0.".to_owned() + &"0".repeat(29) + "1";
+    let expected = [
+        "overview".to_owned(),
+        "pareto-teapot-edge-1t-0".to_owned(),
+        "pareto-teapot-edge-1t-10000".to_owned(),
+        format!("pareto-teapot-edge-1t-0-x{scale}"),
+        "drift-teapot-edge-1t".to_owned(),
+        "scale-teapot-edge-1t-0".to_owned(),
+        "tuned-sheet-unsigned-eps-teapot-edge-1t".to_owned(),
+    ];
+    assert_eq!(names, expected);
+    let chart = svg(&report, &figures[6].1).unwrap().unwrap();
+    let texts = texts(&parsed(&chart));
+    for label in ["offset 0", "offset 10,000", "offset 0, scale 10⁻³⁰", "eps"] {
+        assert!(texts.iter().any(|(t, _)| t == label), "{label}: {texts:?}");
+    }
+}
+
+/// The pieces of the front's and the floor's lines: all that is drawn in their colour.
+fn stairs(tree: &Tree) -> Vec<Rect> {
+    fn walk(group: &Group, out: &mut Vec<Rect>) {
+        for node in group.children() {
+            match node {
+                Node::Group(inner) => walk(inner, out),
+                Node::Path(path) => {
+                    let muted = theme::LIGHT.muted;
+                    let paint = path.stroke().map(Stroke::paint);
+                    let of_lines = matches!(
+                        paint,
+                        Some(Paint::Color(c)) if (c.red, c.green, c.blue) == (muted.0, muted.1, muted.2)
+                    );
+                    if of_lines {
+                        let data = path.data().clone().transform(path.abs_transform()).unwrap();
+                        let pieces = data.points().windows(2).filter_map(|w| {
+                            let (x, y) = (w[0].x.min(w[1].x), w[0].y.min(w[1].y));
+                            let (right, bottom) = (w[0].x.max(w[1].x), w[0].y.max(w[1].y));
+                            Rect::from_ltrb(x, y, right + 0.1, bottom + 0.1)
+                        });
+                        out.extend(pieces);
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+    let mut out = Vec::new();
+    walk(tree.root(), &mut out);
+    out
+}
+
+#[test]
+fn labels_of_methods_keep_clear_of_the_lines_of_the_front_and_of_the_floor() {
+    let named = |(name, _): &(&str, Report)| *name == "judged";
+    let (_, report) = cases::all().into_iter().find(named).unwrap();
+    let mut checked = 0;
+    for (name, subject) in figures(&report) {
+        if !matches!(subject, Subject::Pareto(..)) {
+            continue;
+        }
+        let tree = parsed(&svg(&report, &subject).unwrap().unwrap());
+        let known: HashSet<&str> = report.runs.iter().map(|r| r.kernel.as_str()).collect();
+        for line in stairs(&tree) {
+            for (text, place) in texts(&tree) {
+                if !known.contains(text.as_str()) {
+                    continue;
+                }
+                checked += 1;
+                let crosses = line.left() < place.right()
+                    && place.left() < line.right()
+                    && line.top() < place.bottom()
+                    && place.top() < line.bottom();
+                assert!(!crosses, "{name}: '{text}' at {place:?} on {line:?}");
+            }
+        }
+    }
+    assert!(checked > 100, "{checked}");
 }

@@ -3,7 +3,7 @@
 //! Shells cut a window into the picture of depth: a ray through the middle meets 2K layers. Of the boxes, all parts
 //! have the same centre, so no split plane between centroids separates anything.
 
-use super::{Draft, Icosphere, draft::matte};
+use super::{Draft, Icosphere, draft::matte, icosphere};
 use crate::geometry::{DVec3, Vec3};
 use crate::registry::{ParamKind, ParamSpec};
 use crate::scene::{Scene, SceneEntry, SceneError, Sizes};
@@ -12,16 +12,24 @@ use crate::scene::{Scene, SceneEntry, SceneError, Sizes};
 pub const SHELLS: SceneEntry = SceneEntry {
     name: "shells",
     about: "Spheres within spheres, so that every ray meets all layers.",
-    size: "K",
-    params: &[ParamSpec {
-        name: "K",
-        about: "Spheres, each of 0.93 of the radius of the one around it.",
-        kind: ParamKind::Int { min: 1, max: 3900 },
-        default: "16",
-    }],
+    size: "K[,L]",
+    params: &[
+        ParamSpec {
+            name: "K",
+            about: "Spheres, each of 0.93 of the radius of the one around it.",
+            kind: ParamKind::Int { min: 1, max: 3900 },
+            default: "16",
+        },
+        ParamSpec {
+            name: "L",
+            about: "How often every sphere is cut; 4 where it is left out.",
+            kind: ParamKind::Int { min: 0, max: 4 },
+            default: "",
+        },
+    ],
     example: "shells:2",
     blind: false,
-    triangles: |sizes| 5_120 * u64::from(sizes.int(0)),
+    triangles: |sizes| icosphere::triangles(level(sizes)) * u64::from(sizes.int(0)),
     build: shells,
 };
 
@@ -45,9 +53,14 @@ pub const MATRYOSHKA: SceneEntry = SceneEntry {
     build: matryoshka,
 };
 
+/// Cuts of every sphere: 4 make 5,120 triangles, 3 make 1,280.
+fn level(sizes: &Sizes) -> u32 {
+    sizes.optional(1).map_or(4, |l| l as u32)
+}
+
 fn shells(sizes: &Sizes) -> Result<Scene, SceneError> {
     let mut draft = Draft::new(Vec3::Z);
-    let unit = Icosphere::new(4);
+    let unit = Icosphere::new(level(sizes));
     let mut radius = 1.0;
     for _ in 0..sizes.int(0) {
         draft.sphere(&unit, DVec3::ZERO, radius);

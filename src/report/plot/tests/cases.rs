@@ -1,6 +1,7 @@
 //! Reports of every shape that plots must cope with.
 
 use crate::lab::PerRay;
+use crate::registry::Value;
 use crate::report::Report;
 use crate::report::Run;
 use crate::report::fixture::{N, judged, params, report, run, run_of, summary, teapot};
@@ -33,6 +34,7 @@ pub(super) fn all() -> Vec<(&'static str, Report)> {
         ("short-lines", short_lines()),
         ("combinations", combinations()),
         ("judged", judged_methods()),
+        ("tuned", tuned()),
         ("judged-alone", report(vec![judged("woop", 1e4, 3.0, 0)])),
     ]
 }
@@ -69,6 +71,22 @@ fn judged_methods() -> Report {
         };
         runs.push(judged(name, 1e4, speed * 0.98, far));
         runs.push(judged(name, 1e6, speed * 0.98, far));
+    }
+    report(runs)
+}
+
+/// A kernel with several values of its parameter, at two offsets and two scales.
+fn tuned() -> Report {
+    let mut runs = Vec::new();
+    for (i, eps) in [1e-7, 1e-5, 1e-3].into_iter().enumerate() {
+        for (offset, scale) in [(0.0, 1.0), (1e4, 1.0), (0.0, 1e-30)] {
+            let mut run = judged("sheet-unsigned", offset, 3.0, 900 * i as u64);
+            run.params.insert("eps", Value::Float(eps));
+            if let Some(accuracy) = &mut run.accuracy {
+                accuracy.scale = scale;
+            }
+            runs.push(run);
+        }
     }
     report(runs)
 }

@@ -65,7 +65,8 @@ fn a_killed_measurement_goes_on_and_stands_in_the_order_of_its_plan() {
     let mut bundle = Bundle::create_judged(&dir, &plan, provenance).unwrap();
     let control = Control::default();
     let mut ended = 0;
-    accuracy_from(&plan, bundle.done(), &control, &mut |event| {
+    let done = bundle.done().clone();
+    accuracy_from(&plan, &done, &control, &mut |event| {
         bundle.note_judged(&event).unwrap();
         ended += usize::from(matches!(event, AccuracyEvent::Finished { .. }));
         if ended == 5 {

@@ -1,7 +1,7 @@
 //! `edge`: rays that are aimed at shared edges and vertices, from outside: where methods leak.
 //!
 //! ```text
-//!   ●  origin: two diagonals of the box away from the target
+//!   ●  origin: two diagonals of the box away from the target (`distance`)
 //!    \
 //!  a──x────b    three rays of four: a uniform point of a shared edge; every fourth: one of the edge's ends
 //! ```
@@ -34,16 +34,27 @@ pub(super) const ENTRY: RaySetEntry = RaySetEntry {
     about: "Rays from outside at shared edges (three of four) and vertices beyond which the surface goes on: where methods leak.",
     query: Query::Closest,
     argument: "",
-    params: &[ParamSpec {
-        name: "at",
-        about: "What the rays are aimed at: points of edges, vertices, or both.",
-        kind: ParamKind::Choice(&["both", "edge", "vertex"]),
-        default: "both",
-    }],
+    params: &[
+        ParamSpec {
+            name: "at",
+            about: "What the rays are aimed at: points of edges, vertices, or both.",
+            kind: ParamKind::Choice(&["both", "edge", "vertex"]),
+            default: "both",
+        },
+        ParamSpec {
+            name: "distance",
+            about: "From origin to target, in diagonals of the box; a shorter one rounds less and may start inside.",
+            kind: ParamKind::Float {
+                min: 1e-3,
+                max: 1e3,
+            },
+            default: "2",
+        },
+    ],
     make: |request| Ok(make(request)),
 };
 
-/// Where a ray ends: 1/32 of the box's diagonal behind its target.
+/// Where a ray ends: 1/64 of its way behind its target.
 const BEHIND: f32 = 1.0 + 1.0 / 64.0;
 
 /// Of this many rays one is aimed at a vertex.
@@ -61,6 +72,7 @@ fn make(request: &RayRequest) -> Rays {
         "vertex" => true,
         _ => i % ONE_VERTEX_OF == ONE_VERTEX_OF - 1,
     };
+    let distance = request.params.number("distance").unwrap_or(2.0) * diagonal(mesh);
     let mut aim = |edges: &[Edge], tries: usize, checked: bool| -> Vec<Ray> {
         if edges.is_empty() {
             return Vec::new();
@@ -70,7 +82,7 @@ fn make(request: &RayRequest) -> Rays {
             tries.find_map(|_| {
                 let pick = (u64::from(random.next_u32()) * edges.len() as u64) >> 32;
                 let target = Target::of(mesh, &edges[pick as usize], at_vertex(i), &mut random);
-                let ray = target.ray(mesh, &mut random);
+                let ray = target.ray(mesh, distance, &mut random);
                 (!checked || target.goes_on(&seams, mesh, &ray)).then_some(ray)
             })
         };
@@ -124,8 +136,8 @@ impl<'a> Target<'a> {
         }
     }
 
-    /// A ray from outside.
-    fn ray(&self, mesh: &Mesh, random: &mut Pcg32) -> Ray {
+    /// A ray from the side that looks away from the box's centre, over this distance.
+    fn ray(&self, mesh: &Mesh, distance: f64, random: &mut Pcg32) -> Ray {
         let away = match unit_normal(&mesh.corners(self.edge.prim)) {
             Some(normal) => {
                 let normal = normal.as_dvec3();
@@ -135,7 +147,7 @@ impl<'a> Target<'a> {
             }
             None => direction(random),
         };
-        let origin = (self.point + away * (2.0 * diagonal(mesh))).as_vec3();
+        let origin = (self.point + away * distance).as_vec3();
         Ray {
             t_max: BEHIND,
             ..Ray::new(origin, (self.point - origin.as_dvec3()).as_vec3())

@@ -13,8 +13,9 @@
 //! |t − t*|·|d| <= 64 u (M + |t*|·|d|), with t* the exact t, d the direction, u = 2⁻²⁴, and M the largest absolute
 //! coordinate of the mesh and of the ray's origin. 64 u is ten times what the sum of a handful of roundings can be, and
 //! far below the distance of surfaces that a scene keeps apart; surfaces nearer to each other than that count as one.
-//! The tolerance knows neither the method nor the triangles' neighbourhood, and shared edges seen at slopes below
-//! 1/64 can be called wrong surfaces.
+//! A neighbour that shares a corner with a triangle of the tie set may be seen at a slope, where a rounding error across
+//! the ray is a longer way along it: for it, |t − t*|·|d| is multiplied by the sine of the angle between ray and plane.
+//! The tolerance knows nothing of the method.
 //!
 //! **Errors**, over right hits. Of t: |t − t*| in units of the last place of t*, the distance of neighbouring `f32` around
 //! it; half an ulp is the best that a rounded t can be. Of the point: the distance of o + t·d, computed in `f32` as a
@@ -27,7 +28,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use crate::accel::Accelerator;
-use crate::geometry::{Hit, Ray, Vec3};
+use crate::geometry::{DVec3, Hit, Ray, Vec3};
 use crate::oracle::Oracle;
 use crate::scene::Mesh;
 use crate::stats::{Histogram, upper95};
@@ -92,7 +93,7 @@ impl Truths {
         let truth = &self.batches[i / BATCH].truths[i % BATCH];
         let off = (f64::from(hit.t) - truth.t).abs();
         // Both are false for NaN, which is astray.
-        let near = off <= ulp(truth.t) || self.same_point(ray, truth.t, hit.t);
+        let near = off <= ulp(truth.t) || self.same_point(ray, truth.t, hit.t, 1.0);
         truth.is_hit() && hit.is_hit() && !near
     }
 
@@ -126,14 +127,25 @@ impl Truths {
             (false, true) => Worth::Phantom,
             (true, false) => Worth::Leak,
             (true, true) if truths.allows(truth, hit.prim) => Worth::Right,
-            (true, true) if self.same_point(ray, truth.t, hit.t) => Worth::NeighbourSwap,
+            (true, true) if self.same_point(ray, truth.t, hit.t, 1.0) => Worth::NeighbourSwap,
+            (true, true) if self.beside(truths, truth, ray, hit) => Worth::NeighbourSwap,
             (true, true) => Worth::WrongSurface,
         }
     }
 
-    /// Whether the points at `exact` and at `t` are the same within rounding.
-    fn same_point(&self, ray: &Ray, exact: f64, t: f32) -> bool {
-        let off = (f64::from(t) - exact).abs();
+    /// Whether `hit` names a neighbour of a triangle of the tie set that the ray passes within rounding.
+    fn beside(&self, truths: &TruthBatch, truth: &Truth, ray: &Ray, hit: &Hit) -> bool {
+        let corners = self.mesh.corners(hit.prim);
+        let touches = |prim: u32| self.mesh.corners(prim).iter().any(|c| corners.contains(c));
+        let dir = ray.dir.as_dvec3();
+        let sine = normal(&corners).dot(dir).abs() / dir.length();
+        truths.tie_set(truth).any(touches) && self.same_point(ray, truth.t, hit.t, sine)
+    }
+
+    /// Whether the points at `exact` and at `t` are the same within rounding, where what lies between them counts
+    /// `share` of its length.
+    fn same_point(&self, ray: &Ray, exact: f64, t: f32, share: f64) -> bool {
+        let off = (f64::from(t) - exact).abs() * share;
         let length = ray.dir.as_dvec3().length();
         let coordinates = self.extent.max(f64::from(ray.origin.abs().max_element()));
         off * length <= SAME_POINT * (coordinates + exact.abs() * length)
@@ -227,13 +239,19 @@ impl Tally {
 
 /// Distance of `point` from the plane of a triangle with area, in `f64`.
 fn distance_to_plane(point: Vec3, corners: &[Vec3; 3]) -> f64 {
+    (point.as_dvec3() - corners[0].as_dvec3())
+        .dot(normal(corners))
+        .abs()
+}
+
+/// The unit normal in `f64`; zero where there is no area.
+fn normal(corners: &[Vec3; 3]) -> DVec3 {
     let [a, b, c] = corners.map(Vec3::as_dvec3);
     let (e1, e2) = (b - a, c - a);
     // Scaled: products of tiny edges would vanish, and their square.
-    let normal = (e1 / e1.length())
+    (e1 / e1.length())
         .cross(e2 / e2.length())
-        .normalize_or_zero();
-    (point.as_dvec3() - a).dot(normal).abs()
+        .normalize_or_zero()
 }
 
 /// Barycentric weights of vertices 1 and 2 where the ray's line crosses the triangle's plane, in `f64`.
@@ -333,10 +351,19 @@ mod tests {
     fn the_same_surface_ends_at_64_roundings() {
         // M = 9 from the mesh, |t*|·|d| = 1: the tolerance is 640 u.
         let tolerance = (640.0 * U) as f32;
-        let swap = judged(&[(through(0.5), hit(0, 1.0 + 0.99 * tolerance), true)]);
-        let wrong = judged(&[(through(0.5), hit(0, 1.0 + 1.01 * tolerance), true)]);
+        let swap = judged(&[(through(0.5), hit(2, 1.0 + 0.99 * tolerance), true)]);
+        let wrong = judged(&[(through(0.5), hit(2, 1.0 + 1.01 * tolerance), true)]);
         assert_eq!((swap.neighbour_swaps, swap.wrong_surface), (1, 0));
         assert_eq!((wrong.neighbour_swaps, wrong.wrong_surface), (0, 1));
+    }
+
+    #[test]
+    fn a_neighbour_seen_at_a_slope_is_beside_and_a_stranger_at_the_same_t_is_not() {
+        // The ray comes in at a slope of 1/1000 and is off by 1e-5 across, so by 1e-2 along.
+        let ray = Ray::new(Vec3::new(0.5, -1.0, 1e-3), Vec3::new(0.0, 1.0, -1e-3));
+        let off = 1.0 + 1e-2;
+        let found = judged(&[(ray, hit(0, off), true), (ray, hit(2, off), true)]);
+        assert_eq!((found.neighbour_swaps, found.wrong_surface), (1, 1));
     }
 
     #[test]

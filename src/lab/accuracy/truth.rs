@@ -76,8 +76,16 @@ impl TruthBatch {
 
     /// Whether `prim` is in the tie set of `truth`, which is one of this batch and a hit.
     pub fn allows(&self, truth: &Truth, prim: u32) -> bool {
-        let others = || self.ties.get(truth.others as usize);
-        prim == truth.first || others().is_some_and(|o| o.binary_search(&prim).is_ok())
+        prim == truth.first || self.others(truth).binary_search(&prim).is_ok()
+    }
+
+    /// The tie set of `truth`, which is one of this batch and a hit.
+    pub fn tie_set(&self, truth: &Truth) -> impl Iterator<Item = u32> {
+        std::iter::once(truth.first).chain(self.others(truth).iter().copied())
+    }
+
+    fn others(&self, truth: &Truth) -> &[u32] {
+        self.ties.get(truth.others as usize).map_or(&[], |o| o)
     }
 }
 

@@ -65,6 +65,7 @@ fn run() -> Result<(), String> {
         let provenance = Provenance::gather(&plan, command).map_err(|e| e.to_string())?;
         report = Some(Report {
             schema: Report::SCHEMA.to_owned(),
+            judged: None,
             provenance,
             config: plan,
             runs,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use crate::accel::{self, Accelerator, BuildError};
-use crate::geometry::{Hit, Ray};
+use crate::geometry::Ray;
 use crate::oracle::Oracle;
 use crate::registry::Choice;
 use crate::scene::Mesh;
@@ -80,9 +80,8 @@ impl Judge {
         };
         match answers {
             Answers::Hits(hits) => {
-                let blocked: Vec<bool> = hits.iter().map(Hit::is_hit).collect();
                 let truths = Truths::new(&self.oracle, &self.mesh, &self.rays);
-                truths.judge(&self.rays, &hits, &blocked, 0.0).wrong()
+                truths.wrong(&self.rays, &hits)
             }
             Answers::Blocked(blocked) => {
                 let pairs = self.rays.par_iter().zip(&blocked);

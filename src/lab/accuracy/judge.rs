@@ -82,6 +82,15 @@ impl Truths {
         tally.reduce(Tally::default, Tally::joined).accuracy(place)
     }
 
+    /// How many of the answers to all rays are wrong decisions: leaks, phantoms and wrong surfaces.
+    pub fn wrong(&self, rays: &[Ray], hits: &[Hit]) -> u64 {
+        let wrong = |(i, (ray, hit)): &(usize, (&Ray, &Hit))| {
+            let worth = self.worth_of(*i, ray, hit);
+            matches!(worth, Worth::Leak | Worth::Phantom | Worth::WrongSurface)
+        };
+        rays.iter().zip(hits).enumerate().filter(wrong).count() as u64
+    }
+
     /// What the answer to ray `i` of the list is worth.
     pub fn worth_of(&self, i: usize, ray: &Ray, hit: &Hit) -> Worth {
         let batch = &self.batches[i / BATCH];

@@ -54,8 +54,8 @@ proptest! {
         let dir = dir.normalize_or(Vec3::X);
         if let Some(normal) = unit_normal(&corners) {
             let origin = SurfacePoint::of(&corners, u, v * (1.0 - u)).start(normal, dir);
-            // The two kernels that are recommended for rendering; the sheet's own are known to err far off.
-            for name in ["moller-trumbore", "woop"] {
+            // The kernels that are recommended for rendering; the sheet's own are known to err far off.
+            for name in ["moller-trumbore", "woop", "pbrt", "exact"] {
                 let Ok(choice) = kernel::parse(name) else { continue };
                 let ray = Ray::new(origin, dir);
                 let hit = kernel::dispatch(&choice, SelfHit { ray, corners });

@@ -3,7 +3,7 @@
 use crate::geometry::Vec3;
 use crate::geometry::lanes::{Lane, LaneVec3};
 
-/// The corners of `W` triangles: corner, axis, lane.
+/// The corners of `W` triangles by axis: x, y and z of all corners, a row of lanes each.
 #[derive(Debug, Clone, Copy)]
 pub struct Corners<const W: usize>(pub(super) [[[f32; W]; 3]; 3]);
 
@@ -16,19 +16,34 @@ impl<const W: usize> Corners<W> {
     /// Those that `corners(lane)` gives, as they are.
     pub(super) fn of(corners: impl Fn(usize) -> [Vec3; 3]) -> Self {
         let corners: [_; W] = std::array::from_fn(corners);
-        Self(std::array::from_fn(|i| {
-            super::rows(|lane| corners[lane][i])
-        }))
+        Self([0, 1, 2].map(|axis| [0, 1, 2].map(|i| corners.map(|triangle| triangle[i][axis]))))
     }
 
-    /// The three corners, each in all lanes.
+    /// The three corners.
     #[inline(always)]
     pub(super) fn load<L: Lane<W>>(&self) -> [LaneVec3<L>; 3] {
         // No closure: it would be compiled for no instruction set.
+        [self.corner(0), self.corner(1), self.corner(2)]
+    }
+
+    #[inline(always)]
+    fn corner<L: Lane<W>>(&self, i: usize) -> LaneVec3<L> {
+        let [x, y, z] = &self.0;
+        LaneVec3 {
+            x: L::load(&x[i]),
+            y: L::load(&y[i]),
+            z: L::load(&z[i]),
+        }
+    }
+
+    /// The triangle in a lane.
+    #[inline(always)]
+    pub(super) fn triangle(&self, lane: usize) -> [Vec3; 3] {
+        let [x, y, z] = &self.0;
         [
-            LaneVec3::load(&self.0[0]),
-            LaneVec3::load(&self.0[1]),
-            LaneVec3::load(&self.0[2]),
+            Vec3::new(x[0][lane], y[0][lane], z[0][lane]),
+            Vec3::new(x[1][lane], y[1][lane], z[1][lane]),
+            Vec3::new(x[2][lane], y[2][lane], z[2][lane]),
         ]
     }
 }
@@ -37,6 +52,11 @@ impl Corners<8> {
     /// One triangle of a block.
     #[inline(always)]
     pub(super) fn lane(&self, lane: usize) -> Corners<1> {
-        Corners([0, 1, 2].map(|i| super::lane_of(&self.0[i], lane)))
+        let [x, y, z] = &self.0;
+        Corners([
+            super::lane_of(x, lane),
+            super::lane_of(y, lane),
+            super::lane_of(z, lane),
+        ])
     }
 }

@@ -2,11 +2,15 @@
 //!
 //! Products of three differences of `f32` neither overflow nor underflow in `f64`, so nothing vanishes at any scale.
 //!
+//! Eight lanes at a time are plain arrays of `f64`, without branches, so that the compiler can make vectors of them.
+//!
 //! **Source:** T. Möller and B. Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", JGT 2(1), 1997.
 //! **Differs:** no epsilon on the determinant; corners are stored in `f32`, as they come, and widened at each test.
 
+use std::ops::{Add, Mul, Sub};
+
 use crate::geometry::lanes::{Lane, LaneMask, LaneRay, LaneVec3};
-use crate::geometry::{DVec3, Ray, Vec3};
+use crate::geometry::{Ray, Vec3};
 use crate::registry::Params;
 
 use super::known::{self, cross, dot, minus};
@@ -34,31 +38,133 @@ impl MollerTrumboreF64 {
     }
 }
 
-/// The rays of a packet; a power of two.
-const MOST_LANES: usize = 16;
+/// `N` numbers in plain Rust, which the compiler turns into vector instructions where the target has them.
+#[derive(Clone, Copy)]
+struct Wide<const N: usize>([f64; N]);
 
-/// Whether the ray hits, and t, u and v.
+macro_rules! operators {
+    ($($trait:ident $method:ident $op:tt),*) => {$(
+        impl<const N: usize> $trait for Wide<N> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(mut self, other: Self) -> Self {
+                for (x, y) in self.0.iter_mut().zip(other.0) {
+                    *x = *x $op y;
+                }
+                self
+            }
+        }
+    )*};
+}
+
+operators!(Add add +, Sub sub -, Mul mul *);
+
+/// A vector a lane.
+#[derive(Clone, Copy)]
+struct WideVec3<const N: usize>([Wide<N>; 3]);
+
+impl<const N: usize> WideVec3<N> {
+    /// Rows of numbers, widened.
+    #[inline(always)]
+    fn of(rows: &[[f32; N]; 3]) -> Self {
+        let mut wide = [Wide([0.0; N]); 3];
+        for (wide, row) in wide.iter_mut().zip(rows) {
+            for (x, y) in wide.0.iter_mut().zip(row) {
+                *x = f64::from(*y);
+            }
+        }
+        Self(wide)
+    }
+
+    #[inline(always)]
+    fn minus(self, o: Self) -> Self {
+        let ([ax, ay, az], [bx, by, bz]) = (self.0, o.0);
+        Self([ax - bx, ay - by, az - bz])
+    }
+
+    #[inline(always)]
+    fn cross(self, o: Self) -> Self {
+        let ([ax, ay, az], [bx, by, bz]) = (self.0, o.0);
+        Self([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
+    }
+
+    #[inline(always)]
+    fn dot(self, o: Self) -> Wide<N> {
+        let ([ax, ay, az], [bx, by, bz]) = (self.0, o.0);
+        ax * bx + ay * by + az * bz
+    }
+}
+
+/// Rows of 1 for a hit and 0 for a miss, t, u and v.
 #[inline(always)]
-fn test(origin: DVec3, dir: DVec3, [a, b, c]: [DVec3; 3]) -> (bool, [f64; 3]) {
-    let (e1, e2) = (b - a, c - a);
+fn test<const N: usize>(
+    origin: &[[f32; N]; 3],
+    dir: &[[f32; N]; 3],
+    corners: [&[[f32; N]; 3]; 3],
+) -> [[f32; N]; 4] {
+    let [corner_a, corner_b, corner_c] = corners;
+    let (a, dir) = (WideVec3::of(corner_a), WideVec3::of(dir));
+    let e1 = WideVec3::of(corner_b).minus(a);
+    let e2 = WideVec3::of(corner_c).minus(a);
     let p = dir.cross(e2);
     let det = e1.dot(p);
-    let inv_det = 1.0 / det;
-    let s = origin - a;
-    let u = s.dot(p) * inv_det;
+    let s = WideVec3::of(origin).minus(a);
     let q = s.cross(e1);
-    let v = dir.dot(q) * inv_det;
-    // One branch at the end, so that lanes can run side by side. A zero determinant makes u and v infinite or NaN.
-    let hit = (det != 0.0) & (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0);
-    (hit, [e2.dot(q) * inv_det, u, v])
+    let (t, u, v) = (e2.dot(q), s.dot(p), dir.dot(q));
+    let mut answers = [[0.0; N]; 4];
+    for lane in 0..N {
+        let inv_det = 1.0 / det.0[lane];
+        let (u, v) = (u.0[lane] * inv_det, v.0[lane] * inv_det);
+        // A zero determinant makes u and v infinite or NaN. No branches: the lanes run side by side.
+        let hit = (det.0[lane] != 0.0) & (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0);
+        answers[0][lane] = if hit { 1.0 } else { 0.0 };
+        answers[1][lane] = (t.0[lane] * inv_det) as f32;
+        answers[2][lane] = u as f32;
+        answers[3][lane] = v as f32;
+    }
+    answers
 }
 
-/// The vector in a lane.
+/// The rows of vectors in lanes from `first` on; those after the last lane repeat it.
 #[inline(always)]
-fn widened<const W: usize, L: Lane<W>>(v: LaneVec3<L>, lane: usize) -> DVec3 {
-    let [x, y, z] = [v.x, v.y, v.z].map(|x| f64::from(x.get(lane)));
-    DVec3 { x, y, z }
+fn rows_of<const W: usize, const N: usize, L: Lane<W>>(
+    v: LaneVec3<L>,
+    first: usize,
+) -> [[f32; N]; 3] {
+    let mut rows = [[0.0; N]; 3];
+    for lane in 0..N {
+        let from = (first + lane).min(L::N - 1);
+        rows[0][lane] = v.x.get(from);
+        rows[1][lane] = v.y.get(from);
+        rows[2][lane] = v.z.get(from);
+    }
+    rows
 }
+
+/// Tests `N` lanes from `first` on and writes their answers.
+#[inline(always)]
+fn test_from<const W: usize, const N: usize, L: Lane<W>>(
+    ray: &LaneRay<L>,
+    tri: &Corners<W>,
+    first: usize,
+    answers: &mut [[f32; MOST_LANES]; 4],
+) {
+    let origin = rows_of::<W, N, L>(ray.origin, first);
+    let dir = rows_of::<W, N, L>(ray.dir, first);
+    let [a, b, c]: [LaneVec3<L>; 3] = tri.load();
+    let (a, b, c) = (
+        rows_of::<W, N, L>(a, first),
+        rows_of::<W, N, L>(b, first),
+        rows_of::<W, N, L>(c, first),
+    );
+    let answer = test(&origin, &dir, [&a, &b, &c]);
+    for (all, some) in answers.iter_mut().zip(&answer) {
+        all[first..first + N].copy_from_slice(some);
+    }
+}
+
+/// The rays of a packet; a power of two.
+const MOST_LANES: usize = 16;
 
 impl Kernel for MollerTrumboreF64 {
     type Packed<const W: usize> = Corners<W>;
@@ -91,22 +197,19 @@ impl Kernel for MollerTrumboreF64 {
         ray: &LaneRay<L>,
         tri: &Corners<W>,
     ) -> Option<LaneHit<W, L>> {
-        let corners: [LaneVec3<L>; 3] = tri.load();
-        // Hit or not, t, u and v: a number a lane of a block or packet.
         let mut answers = [[0.0_f32; MOST_LANES]; 4];
-        for lane in 0..L::N {
-            let corners = corners.map(|v| widened::<W, L>(v, lane));
-            let (hit, [t, u, v]) = test(
-                widened::<W, L>(ray.origin, lane),
-                widened::<W, L>(ray.dir, lane),
-                corners,
-            );
-            let answer = [f64::from(u8::from(hit)), t, u, v];
-            for (row, x) in answers.iter_mut().zip(answer) {
-                row[lane] = x as f32;
+        if L::N == 1 {
+            test_from::<W, 1, L>(ray, tri, 0, &mut answers);
+        } else {
+            for first in (0..L::N).step_by(8) {
+                test_from::<W, 8, L>(ray, tri, first, &mut answers);
             }
         }
-        let [hit, t, u, v] = answers.map(|row| L::from_fn(|lane| row[lane & (MOST_LANES - 1)]));
+        let [hits, ts, us, vs] = &answers;
+        let hit = L::from_fn(|lane| hits[lane & (MOST_LANES - 1)]);
+        let t = L::from_fn(|lane| ts[lane & (MOST_LANES - 1)]);
+        let u = L::from_fn(|lane| us[lane & (MOST_LANES - 1)]);
+        let v = L::from_fn(|lane| vs[lane & (MOST_LANES - 1)]);
         let mask = hit.gt(L::splat(0.0));
         mask.any().then_some(LaneHit { mask, t, u, v })
     }

@@ -96,19 +96,32 @@ pub(super) fn prepare<const W: usize, L: Lane<W>>(lead: &Ray, rays: &LaneRay<L>)
     }
 }
 
-/// A corner relative to the ray's origin, in the frame in which the ray runs along z.
+/// The corners relative to the ray's origin, in the frame in which the ray runs along z.
 #[inline(always)]
 pub(super) fn sheared<const W: usize, L: Lane<W>>(
     ray: &Prepared<L>,
-    corner: &[[f32; W]; 3],
-) -> LaneVec3<L> {
+    tri: &Corners<W>,
+) -> [LaneVec3<L>; 3] {
     let [kx, ky, kz] = ray.axes;
-    let x = L::load(&corner[kx]) - ray.origin.x;
-    let y = L::load(&corner[ky]) - ray.origin.y;
-    let z = L::load(&corner[kz]) - ray.origin.z;
+    let rows = [&tri.0[kx], &tri.0[ky], &tri.0[kz]];
+    [
+        corner(ray, rows, 0),
+        corner(ray, rows, 1),
+        corner(ray, rows, 2),
+    ]
+}
+
+/// One of the three, from the rows of all.
+#[inline(always)]
+fn corner<const W: usize, L: Lane<W>>(
+    ray: &Prepared<L>,
+    [x, y, z]: [&[[f32; W]; 3]; 3],
+    i: usize,
+) -> LaneVec3<L> {
+    let z = L::load(&z[i]) - ray.origin.z;
     LaneVec3 {
-        x: x - ray.shear.x * z,
-        y: y - ray.shear.y * z,
+        x: L::load(&x[i]) - ray.origin.x - ray.shear.x * z,
+        y: L::load(&y[i]) - ray.origin.y - ray.shear.y * z,
         z,
     }
 }
@@ -127,9 +140,7 @@ pub(super) fn test<const W: usize, L: Lane<W>, E: Edge>(
     tri: &Corners<W>,
 ) -> Option<Sheared<L, L::Mask>> {
     let zero = L::splat(0.0);
-    let a = sheared::<W, L>(ray, &tri.0[0]);
-    let b = sheared::<W, L>(ray, &tri.0[1]);
-    let c = sheared::<W, L>(ray, &tri.0[2]);
+    let [a, b, c] = sheared(ray, tri);
     let mut u = E::edge(c.x, b.y, c.y, b.x);
     let mut v = E::edge(a.x, c.y, a.y, c.x);
     let mut w = E::edge(b.x, a.y, b.y, a.x);

@@ -13,12 +13,13 @@
 use crate::geometry::lanes::{Lane, LaneMask, LaneRay, LaneVec3};
 use crate::geometry::{DVec3, Ray, Vec3};
 
+use super::Corners;
 use super::error::{self, HUGE, Quotient, TINY, gamma};
 
 /// Corners, unit normal and twice the area of `W` triangles.
 #[derive(Debug, Clone, Copy)]
 pub struct Packed<const W: usize> {
-    corners: [[[f32; W]; 3]; 3],
+    corners: Corners<W>,
     normal: [[f32; W]; 3],
     area: [f32; W],
 }
@@ -47,9 +48,9 @@ fn normal_of(corners: &[Vec3; 3]) -> DVec3 {
 pub(super) fn pack<const W: usize>(corners: impl Fn(usize) -> [Vec3; 3]) -> Packed<W> {
     let normal = |lane| normal_of(&corners(lane));
     Packed {
-        corners: std::array::from_fn(|i| super::rows(|lane| corners(lane)[i])),
         normal: super::rows(|lane| normal(lane).normalize_or_zero().as_vec3()),
         area: std::array::from_fn(|lane| normal(lane).length() as f32),
+        corners: Corners::of(corners),
     }
 }
 
@@ -57,7 +58,7 @@ pub(super) fn pack<const W: usize>(corners: impl Fn(usize) -> [Vec3; 3]) -> Pack
 #[inline(always)]
 pub(super) fn lane(block: &Packed<8>, lane: usize) -> Packed<1> {
     Packed {
-        corners: [0, 1, 2].map(|i| super::lane_of(&block.corners[i], lane)),
+        corners: block.corners.lane(lane),
         normal: super::lane_of(&block.normal, lane),
         area: [block.area[lane & 7]],
     }
@@ -72,26 +73,34 @@ pub(super) fn cross<const W: usize, const LOCAL: bool, L: Lane<W>>(
     tri: &Packed<W>,
 ) -> Option<Crossing<L, L::Mask>> {
     let normal = LaneVec3::load(&tri.normal);
-    let corners = [0, 1, 2].map(|i| LaneVec3::load(&tri.corners[i]));
+    let [a, b, c] = tri.corners.load();
     let slope = ray.dir.dot(normal);
     // A zero normal, of a triangle without area, makes every ray parallel. NaN passes and gives a NaN t.
     let mask = !slope.eq(L::splat(0.0));
-    mask.any().then(|| {
-        let t = corners[0].minus(ray.origin).dot(normal) / slope;
-        let to_corners = if LOCAL {
-            let reach = ray.dir.scaled(t);
-            corners.map(|v| v.minus(ray.origin).minus(reach))
-        } else {
-            let point = ray.origin.add_scaled(ray.dir, t);
-            corners.map(|v| v.minus(point))
-        };
-        Crossing {
-            mask,
-            t,
-            to_corners,
-            normal,
-            area: L::load(&tri.area),
-        }
+    if !mask.any() {
+        return None;
+    }
+    let (t, to_corners);
+    if LOCAL {
+        let [a, b, c] = [
+            a.minus(ray.origin),
+            b.minus(ray.origin),
+            c.minus(ray.origin),
+        ];
+        t = a.dot(normal) / slope;
+        let reach = ray.dir.scaled(t);
+        to_corners = [a.minus(reach), b.minus(reach), c.minus(reach)];
+    } else {
+        t = a.minus(ray.origin).dot(normal) / slope;
+        let point = ray.origin.add_scaled(ray.dir, t);
+        to_corners = [a.minus(point), b.minus(point), c.minus(point)];
+    }
+    Some(Crossing {
+        mask,
+        t,
+        to_corners,
+        normal,
+        area: L::load(&tri.area),
     })
 }
 

@@ -111,6 +111,26 @@ impl Setting {
         accel::build_for(set, &self.mesh, accel, n, kernel, 4 << 30).map_err(|e| e.to_string())
     }
 
+    /// Whether every answer is the oracle's: the lowest triangle of the nearest hits, `t` next to the true one.
+    fn equals_the_truth(&self, answers: &Answers) -> Result<(), String> {
+        for (i, ray) in self.rays().iter().enumerate() {
+            let (hit, truth) = (&answers.hits[i], self.oracle().truth(ray));
+            let prim = hit.is_hit().then_some(hit.prim);
+            let near = truth.t.is_none_or(|t| {
+                t.cmp_f32(hit.t.next_down()).is_ge() && t.cmp_f32(hit.t.next_up()).is_le()
+            });
+            if prim != truth.canonical() || !near || answers.blocked[i] != truth.is_hit() {
+                return Err(format!(
+                    "ray {i} {ray:?}: brute force with exact says {hit:?}, blocked: {}; truth: t {:?}, triangles {:?}",
+                    answers.blocked[i],
+                    truth.t.map(|t| t.to_f64()),
+                    truth.tie_set
+                ));
+            }
+        }
+        Ok(())
+    }
+
     /// What brute force with `kernel` answers.
     pub fn brute(&self, kernel: &Choice) -> Result<Arc<Answers>, String> {
         let mut known = self.brute.lock().map_err(|e| e.to_string())?;
@@ -125,6 +145,9 @@ impl Setting {
         };
         brute.closest(rays, &mut answers.hits);
         brute.occluded(rays, &mut answers.blocked);
+        if kernel.name == crate::EXACT {
+            self.equals_the_truth(&answers)?;
+        }
         let answers = Arc::new(answers);
         known.insert(kernel.name.clone(), Arc::clone(&answers));
         Ok(answers)

@@ -149,10 +149,7 @@ struct Filtered<L, M> {
 /// Decides what can be decided in `f32`.
 #[inline(always)]
 fn filter<const W: usize, L: Lane<W>>(ray: &Prepared<L>, tri: &Packed<W>) -> Filtered<L, L::Mask> {
-    let [corner_a, corner_b, corner_c] = &tri.corners.0;
-    let a = shear::sheared::<W, L>(&ray.frame, corner_a);
-    let b = shear::sheared::<W, L>(&ray.frame, corner_b);
-    let c = shear::sheared::<W, L>(&ray.frame, corner_c);
+    let [a, b, c] = shear::sheared(&ray.frame, &tri.corners);
     let u = Woop::<false>::edge(c.x, b.y, c.y, b.x);
     let v = Woop::<false>::edge(a.x, c.y, a.y, c.x);
     let w = Woop::<false>::edge(b.x, a.y, b.y, a.x);
@@ -184,13 +181,8 @@ impl<const W: usize> Packed<W> {
     /// The triangle that is tested in `lane`.
     #[inline(always)]
     fn triangle(&self, lane: usize) -> [Vec3; 3] {
-        let lane = lane.min(W - 1);
-        let [a, b, c] = &self.corners.0;
-        [
-            Vec3::new(a[0][lane], a[1][lane], a[2][lane]),
-            Vec3::new(b[0][lane], b[1][lane], b[2][lane]),
-            Vec3::new(c[0][lane], c[1][lane], c[2][lane]),
-        ]
+        // The rays of a packet all have the same triangle.
+        self.corners.triangle(lane.min(W - 1))
     }
 }
 

@@ -18,7 +18,7 @@ fn plan() -> Plan {
         scenes: vec!["teapot:3".to_owned()],
         accels: accel::ACCELERATORS
             .iter()
-            .filter(|entry| entry.peer.is_none())
+            .filter(|entry| entry.peer.is_none() && !entry.control)
             .map(|entry| accel::parse(entry.name).unwrap())
             .collect(),
         n: vec![NRule::Fixed(4), NRule::Auto],

@@ -14,7 +14,7 @@ fn plan() -> Plan {
         scenes: vec!["teapot:4".to_owned(), "soup:300".to_owned()],
         accels: accel::ACCELERATORS
             .iter()
-            .filter(|entry| entry.peer.is_none())
+            .filter(|entry| entry.peer.is_none() && !entry.control)
             .map(|entry| accel::parse(entry.name).unwrap())
             .collect(),
         n: vec![NRule::Fixed(1), NRule::Fixed(8), NRule::Auto],

@@ -33,6 +33,7 @@ mod brute;
 mod bvh;
 mod bvh_wide;
 mod clip;
+mod exhibit;
 mod grid;
 mod items;
 mod kd_tree;
@@ -280,6 +281,10 @@ pub const ACCELERATORS: &[AcceleratorEntry] = &[
     peers::OBVHS,
     peers::BVH_CRATE,
     peers::EMBREE,
+    grid::INCREMENTAL,
+    grid::INSIDE_ONLY,
+    grid::F32_OVERLAP,
+    bvh::NAIVE_SLAB,
 ];
 
 /// The accelerator taken where none is named: the fastest of raylab's own.

@@ -23,6 +23,8 @@ pub struct Query<'a, T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: b
     /// The answer so far.
     pub best: Hit,
     limit: f32,
+    /// See [`Visitor::narrow`].
+    counts: [f32; 2],
     pub counter: C,
 }
 
@@ -37,6 +39,7 @@ impl<'a, T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool>
             ray,
             best: Hit::MISS,
             limit: ray.t_max,
+            counts: [f32::NEG_INFINITY, f32::INFINITY],
             counter,
         }
     }
@@ -74,6 +77,10 @@ impl<'a, T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool>
             v: hit.v.get(lane),
             prim,
         };
+        let [from, to] = self.counts;
+        if !(hit.t >= from && hit.t <= to) {
+            return false;
+        }
         let Packed { kernel, mesh, .. } = self.packed;
         let (best, limit) = (&mut self.best, &mut self.limit);
         take::<K, OCCLUSION>(kernel, mesh, self.ray, hit, best, limit)
@@ -126,6 +133,11 @@ impl<T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool> Visitor
     #[inline(always)]
     fn skipped(&mut self, prim: u32) {
         self.counter.skipped(prim);
+    }
+
+    #[inline(always)]
+    fn narrow(&mut self, from: f32, to: f32) {
+        self.counts = [from, to];
     }
 
     #[inline(always)]

@@ -34,6 +34,23 @@ pub(super) fn corners(aabb: Aabb) -> Corners {
     [aabb.min.to_array(), aabb.max.to_array()]
 }
 
+/// What a traversal asks of a prepared ray about boxes.
+pub(super) trait BoxTest {
+    /// Prepares a valid ray for boxes inside `scene`.
+    fn new(ray: &Ray, scene: &Aabb) -> Self;
+
+    /// The `t` at which the ray enters and leaves the box, within its least `t` and `limit`; the box is missed if the
+    /// first is greater than the second.
+    fn clip(&self, corners: &Corners, limit: f32) -> (f32, f32);
+
+    /// As [`BoxTest::clip`], `None` where the box is missed.
+    #[inline(always)]
+    fn interval(&self, corners: &Corners, limit: f32) -> Option<(f32, f32)> {
+        let (entry, exit) = self.clip(corners, limit);
+        (entry <= exit).then_some((entry, exit))
+    }
+}
+
 /// A ray against the planes across one axis.
 #[derive(Debug, Clone, Copy)]
 struct Slab {
@@ -125,6 +142,18 @@ impl SlabRay {
     pub fn interval(&self, corners: &Corners, limit: f32) -> Option<(f32, f32)> {
         let (entry, exit) = self.clip(corners, limit);
         (entry <= exit).then_some((entry, exit))
+    }
+}
+
+impl BoxTest for SlabRay {
+    #[inline(always)]
+    fn new(ray: &Ray, scene: &Aabb) -> Self {
+        Self::new(ray, scene)
+    }
+
+    #[inline(always)]
+    fn clip(&self, corners: &Corners, limit: f32) -> (f32, f32) {
+        Self::clip(self, corners, limit)
     }
 }
 

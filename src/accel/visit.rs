@@ -18,6 +18,10 @@ pub trait Visitor {
     #[inline(always)]
     fn skipped(&mut self, _prim: u32) {}
 
+    /// From now on only hits with `t` in this interval count: what `grid-inside-only` does wrong, and nothing else needs.
+    #[inline(always)]
+    fn narrow(&mut self, _from: f32, _to: f32) {}
+
     /// Nothing that begins beyond this `t` can change the answer; what begins at it still can.
     fn t_limit(&self) -> f32;
 }

@@ -157,7 +157,7 @@ pub struct InspectArgs {
     /// The scene
     pub scene: String,
     /// The ray through the centre of this pixel; 0,0 is the upper left one
-    #[arg(long, value_name = "X,Y", value_parser = parse_pixel, required_unless_present = "origin")]
+    #[arg(long, value_name = "X,Y", value_parser = parse_pixel, required_unless_present_any = ["origin", "rays_file"])]
     pub pixel: Option<(u32, u32)>,
     /// Pixels of the picture that `--pixel` is in [default: 960x720]
     #[arg(long, value_name = "WxH", value_parser = shade::parse_size)]
@@ -168,6 +168,17 @@ pub struct InspectArgs {
     /// Direction of the ray from `--origin`, and the unit of t
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vec3, allow_hyphen_values = true, requires = "origin")]
     pub dir: Option<Vec3>,
+    /// A ray of this .rays file, with its interval of t, instead of a pixel's
+    #[arg(long, value_name = "FILE.rays", conflicts_with_all = ["pixel", "size", "eye", "at", "fov", "origin", "dir"])]
+    pub rays_file: Option<PathBuf>,
+    /// Which ray of the file, counted from 0
+    #[arg(
+        long,
+        value_name = "INDEX",
+        default_value_t = 0,
+        requires = "rays_file"
+    )]
+    pub ray: usize,
     /// Another view
     #[command(flatten)]
     pub camera: CameraArgs,

@@ -5,6 +5,7 @@ use crate::geometry::Ray;
 use crate::lab::{self, Inspection, Step, Subject};
 use crate::oracle::Oracle;
 use crate::scene::Scene;
+use crate::trace::files::read_rays;
 
 use super::args::InspectArgs;
 use super::session::{Config, PNG_SIZE, load};
@@ -49,6 +50,17 @@ enum Aim {
 
 impl Aim {
     fn read(args: &InspectArgs) -> Result<Self, Failure> {
+        if let Some(path) = &args.rays_file {
+            let rays = read_rays(path)?;
+            return rays.get(args.ray).copied().map(Self::Ray).ok_or_else(|| {
+                Failure::Usage(format!(
+                    "{} has no ray {}; the last one is {}",
+                    path.display(),
+                    args.ray,
+                    rays.len() - 1
+                ))
+            });
+        }
         if let (Some(origin), Some(dir)) = (args.origin, args.dir) {
             let ray = Ray::new(origin, dir);
             return if ray.is_valid() {
@@ -61,7 +73,7 @@ impl Aim {
         }
         let Some(at) = args.pixel else {
             return Err(Failure::Usage(
-                "no ray is named; give --pixel X,Y, or --origin X,Y,Z and --dir X,Y,Z".to_owned(),
+                "no ray is named; give --pixel X,Y, or --origin X,Y,Z and --dir X,Y,Z, or --rays-file F.rays".to_owned(),
             ));
         };
         let size = args.size.unwrap_or(PNG_SIZE);
@@ -101,8 +113,14 @@ fn text(inspection: &Inspection, aim: &Aim) -> String {
         Aim::Ray(_) => String::new(),
     };
     let ray = &inspection.ray;
+    let interval = if (ray.t_min, ray.t_max) == (0.0, f32::INFINITY) {
+        String::new()
+    } else {
+        let [from, to] = [ray.t_min, ray.t_max].map(number_text);
+        format!(", t from {from} to {to}")
+    };
     let mut text = format!(
-        "{}: {}{n}, {}\n{pixel}from {} along {}\n\n",
+        "{}: {}{n}, {}\n{pixel}from {} along {}{interval}\n\n",
         inspection.scene,
         inspection.accel,
         inspection.kernel,

@@ -1,12 +1,15 @@
 //! `raylab stability`: where each kernel and each accelerator breaks, as a lettered map or as JSON.
 
-use std::sync::Arc;
+use std::path::Path;
+use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 use crate::accel;
 use crate::kernel;
 use crate::lab::Control;
 use crate::lab::stability::{Cell, Map, StabilityEvent, StabilityPlan, Verdict, case, stability};
+
+use crate::report::stability::write_map;
 
 use super::args::StabilityArgs;
 use super::choices::{split_list, thread_count};
@@ -17,6 +20,9 @@ use super::{Failure, interrupt, print};
 pub fn run(args: &StabilityArgs) -> Result<(), Failure> {
     let plan = plan(args)?;
     let map = measure(&plan, args)?;
+    if let Some(dir) = &args.out {
+        write(&map, dir, args.quiet)?;
+    }
     if args.json {
         let json = serde_json::to_string_pretty(&map)
             .map_err(|e| Failure::Failed(format!("cannot write the map as JSON: {e}")))?;
@@ -67,6 +73,26 @@ fn measure(plan: &StabilityPlan, args: &StabilityArgs) -> Result<Map, Failure> {
     })?;
     progress.clear();
     Ok(map)
+}
+
+/// Writes the map, its picture, and each failing cell as a scene and a ray.
+fn write(map: &Map, dir: &Path, quiet: bool) -> Result<(), Failure> {
+    let progress = Mutex::new(Progress::new(!quiet));
+    let start = Instant::now();
+    let files = write_map(map, dir, |done, all| {
+        let share = done as f64 / all.max(1) as f64;
+        let left = start.elapsed().as_secs_f64() * (1.0 / share - 1.0);
+        if let Ok(mut progress) = progress.lock() {
+            progress.update(Some((share, left)), "leaving out what failures do not need");
+        }
+    })?;
+    if let Ok(mut progress) = progress.lock() {
+        progress.clear();
+    }
+    if !quiet {
+        eprintln!("wrote {} files to {}", files.len(), dir.display());
+    }
+    Ok(())
 }
 
 /// The exit code: a failure that the map does not expect weighs most.

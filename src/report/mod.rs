@@ -17,6 +17,7 @@ mod provenance;
 mod read;
 mod run;
 pub mod series;
+pub mod stability;
 mod table;
 
 pub use crate::lab::{Accuracy, AccuracyBounds, ErrorSpread, Place, Rate, SelfHits, StartRule};

@@ -19,7 +19,7 @@ use crate::geometry::{Aabb, Ray};
 use crate::registry::{ParamKind, ParamSpec, Params};
 use crate::scene::Mesh;
 
-use super::slab::SlabRay;
+use super::slab::{BoxTest, SlabRay};
 use super::stack::{Room, Stack, room};
 use super::{AcceleratorEntry, Singles, Structure, StructureStats, Visitor, finish};
 
@@ -27,6 +27,7 @@ mod binned;
 mod bins;
 mod chop;
 mod cover;
+mod exhibit;
 mod leaves;
 mod partition;
 mod reference;
@@ -35,6 +36,7 @@ mod spatial;
 mod tree;
 mod validate;
 
+pub(super) use exhibit::NAIVE_SLAB;
 pub(super) use tree::{BinaryTree, Build, Node, binary};
 
 pub(super) const ENTRY: AcceleratorEntry = AcceleratorEntry {
@@ -74,25 +76,13 @@ impl Bvh {
         }
     }
 
-    fn references_of(&self, leaf: &Node) -> &[u32] {
-        self.tree.references_of(leaf)
-    }
-}
-
-impl Structure for Bvh {
-    type Items = Singles;
-    type Scratch = Room;
-
-    fn scratch(&self) -> Room {
-        room()
-    }
-
+    /// Leads `visitor` as [`Structure::traverse`] asks, by this test of boxes.
     #[inline(always)]
-    fn traverse<I: Isa, V: Visitor>(&self, ray: &Ray, room: &mut Room, visitor: &mut V) {
+    fn lead<B: BoxTest, V: Visitor>(&self, ray: &Ray, room: &mut Room, visitor: &mut V) {
         let Some(root) = self.tree.nodes.first() else {
             return;
         };
-        let slabs = SlabRay::new(ray, &self.bounds);
+        let slabs = B::new(ray, &self.bounds);
         let Some((mut entry, mut exit)) = slabs.interval(&root.corners, visitor.t_limit()) else {
             return;
         };
@@ -144,6 +134,24 @@ impl Structure for Bvh {
             node = &self.tree.nodes[next.node as usize];
             (place, entry, exit) = (next.node, next.entry, next.exit);
         }
+    }
+
+    fn references_of(&self, leaf: &Node) -> &[u32] {
+        self.tree.references_of(leaf)
+    }
+}
+
+impl Structure for Bvh {
+    type Items = Singles;
+    type Scratch = Room;
+
+    fn scratch(&self) -> Room {
+        room()
+    }
+
+    #[inline(always)]
+    fn traverse<I: Isa, V: Visitor>(&self, ray: &Ray, room: &mut Room, visitor: &mut V) {
+        self.lead::<SlabRay, V>(ray, room, visitor);
     }
 
     fn place_bounds(&self, place: u64) -> Option<Aabb> {

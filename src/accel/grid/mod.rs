@@ -29,6 +29,7 @@ use super::{
     Structure, StructureStats, Visitor, finish,
 };
 
+mod exhibits;
 mod lattice;
 mod lists;
 mod mailbox;
@@ -39,10 +40,11 @@ mod tests;
 mod validate;
 mod walk;
 
+pub(super) use exhibits::{F32_OVERLAP, INCREMENTAL, INSIDE_ONLY};
 use lattice::{Lattice, Shape};
 use lists::Lists;
 use mailbox::{Forgetful, Hashed, Mailbox};
-use overlap::{Boxes, Separating, ThreeTest};
+use overlap::{Boxes, Separating, SingleSeparating, ThreeTest};
 use predict::Model;
 use walk::Walk;
 
@@ -84,6 +86,8 @@ pub(super) const ENTRY: AcceleratorEntry = AcceleratorEntry {
 enum OverlapTest {
     Three,
     Separating,
+    /// A mistake that is exhibited.
+    SingleSeparating,
     Boxes,
 }
 
@@ -159,6 +163,13 @@ impl<M> Grid<M> {
         let lists = match settings.overlap {
             OverlapTest::Three => Lists::build::<ThreeTest>(&lattice, mesh, most),
             OverlapTest::Separating => Lists::build::<Separating>(&lattice, mesh, most),
+            OverlapTest::SingleSeparating => {
+                let bare = Lattice {
+                    pad: 0.0,
+                    ..lattice
+                };
+                Lists::build::<SingleSeparating>(&bare, mesh, most)
+            }
             OverlapTest::Boxes => Lists::build::<Boxes>(&lattice, mesh, most),
         };
         match lists {
@@ -169,6 +180,47 @@ impl<M> Grid<M> {
             }),
             // The model was too low for this mesh, by an unknown factor: half the resolution is a safe advice.
             None => Err(refuse(limit + 1, (n / 2).min(model.largest_n(limit)))),
+        }
+    }
+}
+
+impl<M: Mailbox> Grid<M> {
+    /// Leads `visitor` as [`Structure::traverse`] asks; `ACCUMULATE` and `INSIDE_ONLY` are mistakes that are exhibited.
+    #[inline(always)]
+    fn lead<const ACCUMULATE: bool, const INSIDE_ONLY: bool, V: Visitor>(
+        &self,
+        ray: &Ray,
+        mailbox: &mut M,
+        visitor: &mut V,
+    ) {
+        let Some(mut walk) = Walk::<ACCUMULATE>::new(&self.lattice, ray) else {
+            return;
+        };
+        mailbox.begin();
+        loop {
+            let list = self.lists.of(walk.cell);
+            let exit = walk.exit();
+            visitor.step(
+                walk.cell as u64,
+                true,
+                list.len() as u32,
+                walk.base + walk.entry,
+                walk.base + exit,
+            );
+            if INSIDE_ONLY {
+                let [from, to] = walk.inside();
+                visitor.narrow(from, to);
+            }
+            for &prim in list {
+                if !mailbox.takes(prim) {
+                    visitor.skipped(prim);
+                } else if visitor.test(prim) {
+                    return;
+                }
+            }
+            if !walk.advance(exit, visitor.t_limit()) {
+                return;
+            }
         }
     }
 }
@@ -185,31 +237,7 @@ impl<M: Mailbox> Structure for Grid<M> {
 
     #[inline(always)]
     fn traverse<I: Isa, V: Visitor>(&self, ray: &Ray, mailbox: &mut M, visitor: &mut V) {
-        let Some(mut walk) = Walk::new(&self.lattice, ray) else {
-            return;
-        };
-        mailbox.begin();
-        loop {
-            let list = self.lists.of(walk.cell);
-            let exit = walk.exit();
-            visitor.step(
-                walk.cell as u64,
-                true,
-                list.len() as u32,
-                walk.base + walk.entry,
-                walk.base + exit,
-            );
-            for &prim in list {
-                if !mailbox.takes(prim) {
-                    visitor.skipped(prim);
-                } else if visitor.test(prim) {
-                    return;
-                }
-            }
-            if !walk.advance(exit, visitor.t_limit()) {
-                return;
-            }
-        }
+        self.lead::<false, false, V>(ray, mailbox, visitor);
     }
 
     fn place_bounds(&self, place: u64) -> Option<Aabb> {

@@ -28,9 +28,10 @@ use crate::geometry::Ray;
 
 use super::lattice::Lattice;
 
-/// Where a ray is in a grid, and where it goes on.
+/// Where a ray is in a grid, and where it goes on. `ACCUMULATE` is a mistake that is exhibited: crossings are added up in
+/// `f32`, as in the paper.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Walk {
+pub(super) struct Walk<const ACCUMULATE: bool> {
     /// Index of the cell in the lists.
     pub cell: usize,
     /// What is added to a `t` of the walk to give the ray's, from below.
@@ -85,7 +86,7 @@ fn least(a: f64, b: f64) -> f64 {
     if b < a { b } else { a }
 }
 
-impl Walk {
+impl<const ACCUMULATE: bool> Walk<ACCUMULATE> {
     /// The cell in which `ray` enters the grid; `None` where it passes by within its interval.
     #[inline(always)]
     pub fn new(lattice: &Lattice, ray: &Ray) -> Option<Self> {
@@ -180,10 +181,23 @@ impl Walk {
     #[inline(always)]
     fn face(&mut self, axis: usize) {
         self.plane[axis] += 1.0;
-        self.next[axis] = if self.plane[axis] < self.planes[axis] {
-            self.start[axis] + self.plane[axis] * self.rate[axis]
-        } else {
+        self.next[axis] = if self.plane[axis] >= self.planes[axis] {
             f64::INFINITY
+        } else if ACCUMULATE && self.next[axis].is_finite() {
+            f64::from(self.next[axis] as f32 + self.rate[axis] as f32)
+        } else {
+            self.start[axis] + self.plane[axis] * self.rate[axis]
         };
+    }
+
+    /// The ray's `t` between the planes of the cell, without its shell, in `f32`: what `grid-inside-only` believes in.
+    pub fn inside(&self) -> [f32; 2] {
+        let [mut from, mut to] = [f64::NEG_INFINITY, f64::INFINITY];
+        for a in (0..3).filter(|&a| self.stride[a] != 0) {
+            let at = |plane: f64| self.base + self.start[a] + plane * self.rate[a];
+            from = from.max(at(self.plane[a] - 1.0));
+            to = to.min(at(self.plane[a]));
+        }
+        [from as f32, to as f32]
     }
 }

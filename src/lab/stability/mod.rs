@@ -21,6 +21,7 @@ mod dice;
 mod judge;
 mod known;
 mod model;
+mod reproduce;
 mod run;
 mod shapes;
 
@@ -29,6 +30,7 @@ pub use cases::CASES;
 pub use dice::Dice;
 pub use known::{KnownFailure, known_failure};
 pub use model::{Cell, Fault, Faults, Map, Rung, Verdict, Witness};
+pub use reproduce::{Reproducer, reproduce};
 pub use run::{StabilityEvent, StabilityPlan, stability};
 
 /// The accelerator in which kernels are judged alone.

@@ -253,6 +253,8 @@ pub struct Map {
     pub accels: Vec<String>,
     /// By case, then brute force with each kernel, then each accelerator with each kernel.
     pub cells: Vec<Cell>,
+    /// The seed of all cases.
+    pub seed: u64,
     /// Whether it was stopped before all cells were done.
     pub stopped: bool,
 }

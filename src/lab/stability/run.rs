@@ -165,6 +165,7 @@ pub fn stability(
         cases: entries.iter().map(|c| c.name).collect(),
         kernels: plan.kernels.iter().map(kernel_label).collect(),
         accels: plan.structures().map(accel_label).collect(),
+        seed: plan.seed,
         stopped: finished.len() < all,
         cells: finished.into_iter().map(|(_, cell)| cell).collect(),
     })

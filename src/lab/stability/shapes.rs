@@ -98,6 +98,46 @@ pub(super) fn on_edge(dice: &mut Dice, corners: [Vec3; 3]) -> DVec3 {
     a + (b - a) * dice.unit()
 }
 
+/// A ray at `target` on the triangle with these corners that meets its plane at more than 37 degrees, so that t is well
+/// conditioned: from `reach` away, on the side that looks away from the origin or, if not `outside`, on either side.
+pub(super) fn facing(
+    dice: &mut Dice,
+    corners: [Vec3; 3],
+    target: DVec3,
+    reach: f64,
+    outside: bool,
+) -> Ray {
+    let [a, b, c] = exact(corners);
+    // Of unit length before it is squared, as corners may be as small as numbers are.
+    let side = |p: DVec3| p / p.abs().max_element().max(f64::MIN_POSITIVE);
+    let normal = side(side(b - a).cross(side(c - a)));
+    let normal = normal / normal.length().max(1e-9);
+    let turned = if outside {
+        normal.dot(target) < 0.0
+    } else {
+        dice.below(2) == 0
+    };
+    let away = dice.direction() * 0.8 + if turned { -normal } else { normal };
+    aimed(target + away * reach, target)
+}
+
+/// Rays at insides of `triangles` that face them, from `reach` away; see [`facing`].
+pub(super) fn at_insides(
+    dice: &mut Dice,
+    count: u32,
+    triangles: &[[Vec3; 3]],
+    reach: f64,
+    outside: bool,
+) -> Vec<Ray> {
+    (0..count)
+        .map(|_| {
+            let corners = pick(dice, triangles);
+            let target = dice.inside(exact(corners));
+            facing(dice, corners, target, reach, outside)
+        })
+        .collect()
+}
+
 /// One of the triangles.
 pub(super) fn pick(dice: &mut Dice, triangles: &[[Vec3; 3]]) -> [Vec3; 3] {
     dice.of(triangles)

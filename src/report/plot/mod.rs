@@ -13,11 +13,14 @@
 //! | `pareto` | speed against wrong decisions, where the oracle judged |
 //! | `drift` | wrong decisions and error of t against the offset or the scale, where it judged at more than one |
 //! | `tuned` | wrong decisions and swaps against a kernel's parameter, where it judged several values |
+//! | `stability` | the stability map: not of a report, but of a run of that suite |
 //!
 //! Equal reports give equal bytes: nothing here knows the time, the machine or its fonts.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+
+use crate::lab::stability::Map;
 
 use super::Report;
 use super::export::{ExportError, make, put};
@@ -40,6 +43,7 @@ mod overview;
 mod pareto;
 mod plane;
 mod raster;
+mod stability;
 mod theme;
 mod tuned;
 
@@ -112,6 +116,28 @@ pub fn write_all(
             };
             files.push(put(dir, &format!("{name}{}", format.suffix()), content)?);
         }
+    }
+    Ok(files)
+}
+
+/// Writes the stability map into `dir`, which is made where it is missing: `stability.svg`, `.png` and `-dark.png`.
+///
+/// # Errors
+/// A folder or file that cannot be written.
+pub fn write_map(map: &Map, dir: &Path) -> Result<Vec<PathBuf>, ExportError> {
+    make(dir)?;
+    let mut files = Vec::new();
+    for format in [PlotFormat::Svg, PlotFormat::Png, PlotFormat::PngDark] {
+        let draw = |why| ExportError::Draw {
+            figure: "stability".to_owned(),
+            why,
+        };
+        let svg = stability::svg(map, format.style()).map_err(draw)?;
+        let content = match format {
+            PlotFormat::Svg => svg.into_bytes(),
+            PlotFormat::Png | PlotFormat::PngDark => raster::png(&svg).map_err(draw)?,
+        };
+        files.push(put(dir, &format!("stability{}", format.suffix()), content)?);
     }
     Ok(files)
 }

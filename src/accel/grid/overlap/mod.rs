@@ -9,9 +9,11 @@ use crate::geometry::DVec3;
 #[cfg(test)]
 mod exact;
 mod separating;
+mod single;
 mod three_test;
 
 pub(super) use separating::Separating;
+pub(super) use single::SingleSeparating;
 pub(super) use three_test::ThreeTest;
 
 /// A triangle prepared for being tested against boxes.

@@ -10,7 +10,7 @@
 
 use crate::geometry::{DVec3, Ray, Vec3};
 
-use super::shapes::{aimed, cells, exact, lattice, pick, quad, rounded, soup};
+use super::shapes::{aimed, at_insides, cells, exact, facing, lattice, quad, rounded, soup};
 use super::{CaseEntry, Dice, ONE, RAYS, Setting};
 
 /// Cells along each axis.
@@ -19,14 +19,19 @@ const N: u32 = 8;
 /// Edge lengths of a cell: planes that `f32` holds exactly, and planes that it does not.
 const SIZES: &[f64] = &[1.0, 0.7, 0.1];
 
-/// Squares on cell planes and a soup between them, in a box of [`N`] cells of this size.
-fn crossed(size: f64, dice: &mut Dice) -> Vec<[Vec3; 3]> {
-    let mut triangles = lattice(cells(3));
-    let far = [N as i32 - 1; 3];
-    triangles.extend(lattice([far]));
-    // The square above the far corner, so that the box ends there.
+/// A soup, with squares on cell planes if `squares`, in a box of [`N`] cells of this size.
+fn crossed(size: f64, dice: &mut Dice, squares: bool) -> Vec<[Vec3; 3]> {
+    let mut triangles = if squares {
+        lattice(cells(3))
+    } else {
+        Vec::new()
+    };
+    // One triangle in each of two corners, so that the box ends there.
     let top = DVec3::splat(f64::from(N));
-    triangles.extend([[top, top - DVec3::X, top - DVec3::Y]]);
+    triangles.extend([
+        [top, top - DVec3::X, top - DVec3::Y],
+        [DVec3::ZERO, DVec3::X, DVec3::Y],
+    ]);
     let half = f64::from(N) * 0.5;
     let between = soup(dice, 80, 0.3)
         .into_iter()
@@ -52,7 +57,7 @@ fn place(point: [f64; 3], size: f64) -> Vec3 {
 }
 
 fn along(size: f64, dice: &mut Dice, axes: u32) -> Setting {
-    let triangles = crossed(size, dice);
+    let triangles = crossed(size, dice, true);
     let rays: Vec<Ray> = (0..RAYS)
         .map(|_| {
             let point = on_planes(dice, axes);
@@ -102,7 +107,7 @@ pub(super) const THROUGH_CELL_CORNERS: CaseEntry = CaseEntry {
     rungs: SIZES,
     params: &[],
     make: |size, dice| {
-        let triangles = crossed(size, dice);
+        let triangles = crossed(size, dice, true);
         let rays: Vec<Ray> = (0..RAYS)
             .map(|_| {
                 let (from, to) = (
@@ -126,7 +131,7 @@ pub(super) const STARTS_ON_CELL_FACES: CaseEntry = CaseEntry {
     rungs: SIZES,
     params: &[],
     make: |size, dice| {
-        let triangles = crossed(size, dice);
+        let triangles = crossed(size, dice, false);
         let rays: Vec<Ray> = (0..RAYS)
             .map(|i| {
                 let origin = place(on_planes(dice, 1 + i % 3), size);
@@ -173,11 +178,10 @@ pub(super) const TRIANGLES_ON_CELL_PLANES: CaseEntry = CaseEntry {
         let triangles = rounded(&triangles);
         let rays: Vec<Ray> = (0..RAYS)
             .map(|_| {
-                let corners = exact(dice.of(&triangles[2..]));
-                let target = dice.inside(corners);
+                let corners = dice.of(&triangles[2..]);
+                let target = dice.inside(exact(corners));
                 // A short ray: what it starts behind cannot hide the square.
-                let near = size.min_element() * 0.4;
-                aimed(target + dice.direction() * near, target)
+                facing(dice, corners, target, size.min_element() * 0.4, false)
             })
             .collect();
         Setting::new(&triangles, rays).at(n as u32)
@@ -209,13 +213,7 @@ pub(super) const FLAT_SCENES: CaseEntry = CaseEntry {
             ])
         };
         let triangles = rounded(&(0..64).flat_map(square).collect::<Vec<_>>());
-        let rays: Vec<Ray> = (0..RAYS)
-            .map(|_| {
-                let corners = exact(pick(dice, &triangles));
-                let target = dice.inside(corners);
-                aimed(target + dice.direction() * 2.0, target)
-            })
-            .collect();
+        let rays = at_insides(dice, RAYS, &triangles, 2.0, false);
         Setting::new(&triangles, rays).at(N)
     },
 };
@@ -237,13 +235,7 @@ pub(super) const DIAGONAL_NEEDLES: CaseEntry = CaseEntry {
             })
             .collect();
         let triangles = rounded(&needles);
-        let rays: Vec<Ray> = (0..RAYS)
-            .map(|_| {
-                let corners = exact(pick(dice, &triangles));
-                let target = dice.inside(corners);
-                aimed(target + dice.direction() * 3.0, target)
-            })
-            .collect();
+        let rays = at_insides(dice, RAYS, &triangles, 3.0, false);
         Setting::new(&triangles, rays).at(N)
     },
 };

@@ -14,6 +14,7 @@ use super::{CaseEntry, Dice, ONE, RAYS, Setting};
 /// Offsets of a ball of radius 16: at the last, neighbouring `f32` are 1 apart.
 const OFFSETS: &[f64] = &[0.0, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7];
 
+/// Of the ball.
 const RADIUS: f64 = 16.0;
 
 /// Rays from inside a moved ball at what `target` gives of one of its triangles.
@@ -96,7 +97,7 @@ pub(super) const SILHOUETTES: CaseEntry = CaseEntry {
 
 pub(super) const FAN: CaseEntry = CaseEntry {
     name: "fan",
-    about: "A hub where hundreds of triangles meet, and the spokes around it, seen from all sides.",
+    about: "A hub where hundreds of triangles meet, and the spokes around it: as from inside a tent, no ray escapes.",
     group: "edges",
     source: "poles of spheres and tips of cones in modelled meshes",
     quantity: "valence",
@@ -114,9 +115,9 @@ pub(super) const FAN: CaseEntry = CaseEntry {
                 let target = if i % 2 == 0 {
                     hub
                 } else {
-                    hub + (at - hub) * dice.unit()
+                    hub + (at - hub) * (0.9 * dice.unit())
                 };
-                aimed(target + dice.direction() * 3.0, target)
+                aimed(target + DVec3::Z * 3.0 + dice.cube(), target)
             })
             .collect();
         Setting::new(&triangles, rays)

@@ -2,29 +2,27 @@
 
 use crate::geometry::{DVec3, Ray, Vec3};
 
-use super::shapes::{Soup, aimed, ball, exact, pick, placed, rounded, soup};
+use super::shapes::{Soup, at_insides, ball, exact, facing, pick, placed, rounded, soup};
 use super::{CaseEntry, Dice, ONE, RAYS, Setting};
 
-/// Rays from all around at insides of triangles. `reach` is how far away they begin; every second direction has unit
-/// length.
-fn at_insides(dice: &mut Dice, triangles: &[[Vec3; 3]], reach: f64) -> Vec<Ray> {
-    (0..RAYS)
-        .map(|i| {
-            let corners = pick(dice, triangles);
-            let target = dice.inside(exact(corners));
-            let ray = aimed(target + dice.direction() * reach, target);
-            let dir = ray.dir.as_dvec3();
-            match i % 2 {
-                0 => ray,
-                _ => Ray::new(ray.origin, (dir / dir.length()).as_vec3()),
-            }
-        })
-        .collect()
+/// Rays at insides from `reach` away; every second direction has unit length.
+fn of_both_lengths(
+    dice: &mut Dice,
+    triangles: &[[Vec3; 3]],
+    reach: f64,
+    outside: bool,
+) -> Vec<Ray> {
+    let mut rays = at_insides(dice, RAYS, triangles, reach, outside);
+    for ray in rays.iter_mut().step_by(2) {
+        let dir = ray.dir.as_dvec3();
+        ray.dir = (dir / dir.length()).as_vec3();
+    }
+    rays
 }
 
 fn scaled_ball(scale: f64, dice: &mut Dice) -> Setting {
     let triangles = placed(&ball(5), scale, 0.0);
-    let rays = at_insides(dice, &triangles, 3.0 * scale);
+    let rays = of_both_lengths(dice, &triangles, 3.0 * scale, true);
     Setting::new(&triangles, rays)
 }
 
@@ -68,7 +66,7 @@ pub(super) const DENORMALS: CaseEntry = CaseEntry {
 /// Rays at insides of a ball whose directions are `factor` times as long.
 fn stretched(factor: f64, dice: &mut Dice) -> Setting {
     let triangles = rounded(&ball(5));
-    let rays = at_insides(dice, &triangles, 3.0);
+    let rays = of_both_lengths(dice, &triangles, 3.0, true);
     let stretch = |ray: Ray| Ray::new(ray.origin, (ray.dir.as_dvec3() * factor).as_vec3());
     Setting::new(&triangles, rays.into_iter().map(stretch))
 }
@@ -105,7 +103,7 @@ pub(super) const FAR_ORIGINS: CaseEntry = CaseEntry {
     params: &[],
     make: |distance, dice| {
         let triangles = rounded(&ball(5));
-        let rays = at_insides(dice, &triangles, distance);
+        let rays = of_both_lengths(dice, &triangles, distance, true);
         Setting::new(&triangles, rays)
     },
 };
@@ -123,10 +121,11 @@ pub(super) const OUTLIER: CaseEntry = CaseEntry {
         let far = DVec3::X * distance;
         let side = distance * 1e-3;
         let stray = rounded(&[[far, far + DVec3::Y * side, far + DVec3::Z * side]]);
-        let mut rays = at_insides(dice, &near, 3.0);
+        let mut rays = of_both_lengths(dice, &near, 3.0, true);
         // Every tenth ray aims at the stray.
         for ray in rays.iter_mut().step_by(10) {
-            *ray = aimed(dice.cube() * 2.0, dice.inside(exact(stray[0])));
+            let target = dice.inside(exact(stray[0]));
+            *ray = facing(dice, stray[0], target, distance, false);
         }
         Setting::new(&[near, stray].concat(), rays)
     },
@@ -144,10 +143,11 @@ pub(super) const STADIUM: CaseEntry = CaseEntry {
         let near = rounded(&ball(5));
         let bowl: Soup = ball(3);
         let bowl = placed(&bowl, 4.0 * times, 0.0);
-        let mut rays = at_insides(dice, &near, 3.0);
+        let mut rays = of_both_lengths(dice, &near, 3.0, true);
         for ray in rays.iter_mut().step_by(4) {
             let corners = pick(dice, &bowl);
-            *ray = aimed(dice.cube() * 3.0 * times, dice.inside(exact(corners)));
+            let target = dice.inside(exact(corners));
+            *ray = facing(dice, corners, target, times, false);
         }
         Setting::new(&[near, bowl].concat(), rays)
     },
@@ -169,10 +169,10 @@ pub(super) const GIANT: CaseEntry = CaseEntry {
             DVec3::new(0.0, 0.9, 0.0002) * times,
         ];
         let giant = rounded(&[giant]);
-        let mut rays = at_insides(dice, &small, 3.0);
+        let mut rays = of_both_lengths(dice, &small, 3.0, false);
         for ray in rays.iter_mut().step_by(3) {
             let at = dice.cube() * DVec3::new(1.0, 1.0, 0.0);
-            *ray = aimed(at + dice.direction() * 3.0, at);
+            *ray = facing(dice, giant[0], at, 3.0, false);
         }
         Setting::new(&[small, giant].concat(), rays)
     },
@@ -188,8 +188,7 @@ pub(super) const ORDINARY: CaseEntry = CaseEntry {
     params: &[],
     make: |_, dice| {
         let triangles = rounded(&soup(dice, 300, 0.3));
-        let rays = (0..RAYS).map(|_| aimed(dice.cube() * 3.0, dice.cube()));
-        let rays: Vec<Ray> = rays.collect();
+        let rays = at_insides(dice, RAYS, &triangles, 3.0, false);
         Setting::new(&triangles, rays)
     },
 };

@@ -2,23 +2,8 @@
 
 use crate::geometry::{DVec3, Ray, Vec3};
 
-use super::shapes::{aimed, cells, exact, lattice, on_edge, pick, quad, rounded, soup};
+use super::shapes::{aimed, at_insides, cells, exact, facing, lattice, pick, quad, rounded, soup};
 use super::{CaseEntry, Dice, ONE, RAYS, Setting};
-
-/// Rays at insides, edges and vertices from all around, `reach` away.
-fn at_all(dice: &mut Dice, triangles: &[[Vec3; 3]], reach: f64) -> Vec<Ray> {
-    (0..RAYS)
-        .map(|i| {
-            let corners = pick(dice, triangles);
-            let target = match i % 4 {
-                0 => on_edge(dice, corners),
-                1 => dice.of(&corners).as_dvec3(),
-                _ => dice.inside(exact(corners)),
-            };
-            aimed(target + dice.direction() * reach, target)
-        })
-        .collect()
-}
 
 pub(super) const IDENTICAL_CENTROIDS: CaseEntry = CaseEntry {
     name: "identical-centroids",
@@ -36,7 +21,7 @@ pub(super) const IDENTICAL_CENTROIDS: CaseEntry = CaseEntry {
             })
             .collect();
         let triangles = rounded(&arms);
-        let rays = at_all(dice, &triangles, 3.0);
+        let rays = at_insides(dice, RAYS, &triangles, 3.0, false);
         Setting::new(&triangles, rays)
     },
 };
@@ -53,11 +38,13 @@ pub(super) const SPLIT_PLANES_ON_VERTICES: CaseEntry = CaseEntry {
         let triangles = rounded(&lattice(cells(4)));
         let rays: Vec<Ray> = (0..2 * RAYS)
             .map(|i| {
-                let corners = pick(dice, &triangles);
-                let target = match i % 3 {
-                    0 => dice.of(&corners),
-                    1 => (corners[0] + corners[1]) * 0.5,
-                    _ => dice.inside(exact(corners)).as_vec3(),
+                let target = match i % 2 {
+                    // A vertex with squares on all its sides.
+                    0 => Vec3::from([(); 3].map(|()| (1 + dice.below(3)) as f32)),
+                    _ => {
+                        let corners = pick(dice, &triangles);
+                        dice.inside(exact(corners)).as_vec3()
+                    }
                 };
                 if dice.below(2) == 0 {
                     let along = dice.axis();
@@ -94,9 +81,9 @@ pub(super) const DEPTH_BOMB: CaseEntry = CaseEntry {
         let triangles = rounded(&halved);
         let rays: Vec<Ray> = (0..RAYS)
             .map(|_| {
-                let corners = exact(pick(dice, &triangles));
-                let target = dice.inside(corners);
-                aimed(target + dice.direction() * corners[0].x * 3.0, target)
+                let corners = pick(dice, &triangles);
+                let target = dice.inside(exact(corners));
+                facing(dice, corners, target, exact(corners)[0].x * 3.0, false)
             })
             .collect();
         Setting::new(&triangles, rays)
@@ -114,7 +101,7 @@ pub(super) const NESTED_BOXES: CaseEntry = CaseEntry {
     make: |_, dice| {
         let nested = (1..=40).flat_map(|k| cuboid(DVec3::splat(f64::from(k) * 0.05)));
         let triangles = rounded(&nested.collect::<Vec<_>>());
-        let rays = at_all(dice, &triangles, 5.0);
+        let rays = at_insides(dice, RAYS, &triangles, 5.0, false);
         Setting::new(&triangles, rays)
     },
 };
@@ -218,7 +205,7 @@ pub(super) const BOX_CORNERS: CaseEntry = CaseEntry {
                 let mut dir =
                     DVec3::from_array([(); 3].map(|()| f64::from(dice.below(60)) + 1.0)) * out;
                 dir[dice.below(3) as usize] *= -1.0;
-                Ray::new((target - dir * 2.0).as_vec3(), (dir * 0.3).as_vec3())
+                Ray::new((target - dir * 2.0).as_vec3(), dir.as_vec3())
             })
             .collect();
         Setting::new(&rounded(&triangles), rays)
@@ -235,7 +222,7 @@ pub(super) const OVERLAP: CaseEntry = CaseEntry {
     params: &[],
     make: |_, dice| {
         let triangles = rounded(&soup(dice, 200, 2.0));
-        let rays = at_all(dice, &triangles, 4.0);
+        let rays = at_insides(dice, RAYS, &triangles, 4.0, false);
         Setting::new(&triangles, rays)
     },
 };

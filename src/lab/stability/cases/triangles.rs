@@ -1,24 +1,9 @@
 //! Shapes of triangles: thin, flat, without area, many times the same, or nearly so.
 
-use crate::geometry::{DVec3, Ray};
+use crate::geometry::{DVec3, Ray, Vec3};
 
-use super::shapes::{aimed, exact, on_edge, pick, rounded, soup};
-use super::{CaseEntry, Dice, ONE, RAYS, Setting};
-
-/// Rays at insides, edges and vertices of random triangles, from all around.
-fn at_all(dice: &mut Dice, triangles: &[[crate::geometry::Vec3; 3]]) -> Vec<Ray> {
-    (0..2 * RAYS)
-        .map(|i| {
-            let corners = pick(dice, triangles);
-            let target = match i % 4 {
-                0 => on_edge(dice, corners),
-                1 => dice.of(&corners).as_dvec3(),
-                _ => dice.inside(exact(corners)),
-            };
-            aimed(target + dice.direction() * 3.0, target)
-        })
-        .collect()
-}
+use super::shapes::{aimed, at_insides, exact, facing, rounded, soup};
+use super::{CaseEntry, ONE, RAYS, Setting};
 
 /// A strip of triangles in zigzag between two lines that are `width` apart.
 ///
@@ -34,7 +19,7 @@ fn strip(count: i32, length: f64, width: f64) -> Vec<[DVec3; 3]> {
     (0..count)
         .flat_map(|i| {
             let [a, b] = [at(i), at(i + 1)];
-            [[a, b, a + across], [b, b + across, a + across]]
+            [[a, b, a + across], [b + across, b, a + across]]
         })
         .collect()
 }
@@ -49,7 +34,19 @@ pub(super) const SLIVERS: CaseEntry = CaseEntry {
     params: &[],
     make: |width, dice| {
         let triangles = rounded(&strip(40, 0.05, width));
-        let rays = at_all(dice, &triangles);
+        let rays: Vec<Ray> = (0..2 * RAYS)
+            .map(|i| {
+                let corners = dice.of(&triangles[2..triangles.len() - 2]);
+                let [_, b, c] = exact(corners);
+                // The second side of every first triangle of two is shared, and not a rim of the strip.
+                let target = if i % 2 == 0 {
+                    dice.inside(exact(corners))
+                } else {
+                    b + (c - b) * (0.1 + 0.8 * dice.unit())
+                };
+                facing(dice, corners, target, 3.0, false)
+            })
+            .collect();
         Setting::new(&triangles, rays)
     },
 };
@@ -74,7 +71,7 @@ pub(super) const NEEDLES: CaseEntry = CaseEntry {
             })
             .collect();
         let triangles = rounded(&needles);
-        let rays = at_all(dice, &triangles);
+        let rays = at_insides(dice, RAYS, &triangles, 3.0, false);
         Setting::new(&triangles, rays)
     },
 };
@@ -97,7 +94,7 @@ pub(super) const CAPS: CaseEntry = CaseEntry {
             })
             .collect();
         let triangles = rounded(&caps);
-        let rays = at_all(dice, &triangles);
+        let rays = at_insides(dice, RAYS, &triangles, 3.0, false);
         Setting::new(&triangles, rays)
     },
 };
@@ -117,12 +114,16 @@ pub(super) const ZERO_AREA: CaseEntry = CaseEntry {
                 0 => *c = *b,
                 2 => (*b, *c) = (*a, *a),
                 4 => *b = *a,
-                // The middle of two `f32` of like size is one, or rounds off the line by half an ulp.
-                6 => *c = (*a + *b) * 0.5,
+                6 => {
+                    // On a raster that holds the middle too, so that all three lie on a line exactly.
+                    let raster = |p: Vec3| (p * 1024.0).round() / 1024.0;
+                    (*a, *b) = (raster(*a), raster(*b));
+                    *c = (*a + *b) * 0.5;
+                }
                 _ => {}
             }
         }
-        let rays = at_all(dice, &triangles);
+        let rays = at_insides(dice, RAYS, &triangles, 3.0, false);
         Setting::new(&triangles, rays)
     },
 };
@@ -174,7 +175,7 @@ pub(super) const DUPLICATES: CaseEntry = CaseEntry {
             .take(copies as usize)
             .collect();
         let triangles = rounded(&copies);
-        let rays = at_all(dice, &triangles);
+        let rays = at_insides(dice, RAYS, &triangles, 3.0, false);
         Setting::new(&triangles, rays)
     },
 };
@@ -194,7 +195,7 @@ pub(super) const COPLANAR: CaseEntry = CaseEntry {
         };
         let overlapping: Vec<_> = (0..100).map(|_| [(); 3].map(|()| corner())).collect();
         let triangles = rounded(&overlapping);
-        let rays = at_all(dice, &triangles);
+        let rays = at_insides(dice, RAYS, &triangles, 3.0, false);
         Setting::new(&triangles, rays)
     },
 };

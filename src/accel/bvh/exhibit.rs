@@ -1,0 +1,70 @@
+//! `bvh-naive-slab`: the tree with a slab test that forgets about 0 · ∞.
+
+use crate::geometry::{Aabb, Ray};
+
+use super::super::exhibit::{Behind, Exhibit, Wrong};
+use super::super::slab::{BoxTest, Corners};
+use super::super::stack::Room;
+use super::super::{AcceleratorEntry, finish};
+use super::{Bvh, ENTRY};
+
+/// The tree with the naive slab test.
+pub(in super::super) const NAIVE_SLAB: AcceleratorEntry = AcceleratorEntry {
+    name: "bvh-naive-slab",
+    about: "A binary tree of boxes whose slab test multiplies 0 by infinity and does not pad, and so misses boxes.",
+    paper: "Kay and Kajiya 1986, Ray Tracing Complex Scenes: as it is mostly written",
+    control: true,
+    build: |request| {
+        finish(
+            Exhibit(NaiveSlab(Bvh::build(request.mesh, request.params))),
+            request,
+        )
+    },
+    ..ENTRY
+};
+
+struct NaiveSlab(Bvh);
+
+impl Wrong for NaiveSlab {
+    type Sound = Bvh;
+
+    fn sound(&self) -> &Bvh {
+        &self.0
+    }
+
+    fn lead(&self, ray: &Ray, room: &mut Room, visitor: &mut Behind) {
+        self.0.lead::<NaiveSlabs, _>(ray, room, visitor);
+    }
+}
+
+/// A ray with the reciprocals of its direction.
+#[derive(Debug, Clone, Copy)]
+struct NaiveSlabs {
+    origin: [f32; 3],
+    inverse: [f32; 3],
+    t_min: f32,
+}
+
+impl BoxTest for NaiveSlabs {
+    fn new(ray: &Ray, _: &Aabb) -> Self {
+        Self {
+            origin: ray.origin.to_array(),
+            inverse: ray.dir.recip().to_array(),
+            t_min: ray.t_min,
+        }
+    }
+
+    /// The mistake: (plane - origin) · inverse is 0 · ∞ = NaN for a ray in a face, and `min` and `max` drop the NaN for
+    /// the other plane's infinity; and of a box that is touched in a corner, entry and exit are rounded apart.
+    fn clip(&self, corners: &Corners, limit: f32) -> (f32, f32) {
+        let (mut entry, mut exit) = (self.t_min, limit);
+        for axis in 0..3 {
+            let at =
+                |corner: usize| (corners[corner][axis] - self.origin[axis]) * self.inverse[axis];
+            let (a, b) = (at(0), at(1));
+            entry = entry.max(a.min(b));
+            exit = exit.min(a.max(b));
+        }
+        (entry, exit)
+    }
+}

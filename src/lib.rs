@@ -62,6 +62,7 @@
 //! | an accelerator | a file in `accel/` that implements [`accel::Structure`] | [`accel::ACCELERATORS`] |
 //! | a kernel | a file in `kernel/` that implements [`kernel::Kernel`] | the list in [`kernel`] |
 //! | a scene or family | a file in `scene/` | [`scene::SCENES`] |
+//! | a stability case | an entry in `lab/stability/cases/` | [`lab::stability::CASES`] |
 //! | a ray set | a file in `trace/` | [`trace::RAY_SETS`] |
 //! | a channel of pictures | a file in `shade/` | [`shade::CHANNELS`] |
 //! | an export format | a file in `report/` | [`report::FORMATS`] |

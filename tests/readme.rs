@@ -2,6 +2,7 @@
 
 use raylab::accel::ACCELERATORS;
 use raylab::kernel::KERNELS;
+use raylab::lab::stability::CASES;
 use raylab::report::FORMATS;
 use raylab::scene::SCENES;
 use raylab::shade::CHANNELS;
@@ -26,6 +27,7 @@ fn the_readme_names_every_entry_of_every_registry() {
     let names = names.chain(KERNELS.iter().map(|k| k.name));
     let names = names.chain(SCENES.iter().map(|s| s.name));
     let names = names.chain(RAY_SETS.iter().map(|r| r.name));
+    let names = names.chain(CASES.iter().map(|c| c.name));
     let names = names.chain(CHANNELS.iter().map(|c| c.name));
     let names = names.chain(FORMATS.iter().map(|f| f.name));
     let missing: Vec<&str> = names.filter(|name| !told(name)).collect();

@@ -28,7 +28,7 @@ mod shapes;
 pub use case::{CaseEntry, Setting, case};
 pub use cases::CASES;
 pub use dice::Dice;
-pub use known::{KnownFailure, known_failure};
+pub use known::{Bound, KnownFailure, known_failure};
 pub use model::{Cell, Fault, Faults, Map, Rung, Verdict, Witness};
 pub use reproduce::{Reproducer, reproduce};
 pub use run::{StabilityEvent, StabilityPlan, stability};

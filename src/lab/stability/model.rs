@@ -32,7 +32,7 @@ impl Verdict {
     #[must_use]
     pub const fn letter(self) -> char {
         match self {
-            Self::Ok => '·',
+            Self::Ok => '.',
             Self::Known => 'k',
             Self::Gone => 'g',
             Self::Fails => 'F',

@@ -246,7 +246,7 @@ pub(super) const FINE_CELLS: CaseEntry = CaseEntry {
     group: "cells",
     source: "incremental walks that add t_delta: errors grow with each step",
     quantity: "n",
-    rungs: &[4.0, 16.0, 64.0, 128.0],
+    rungs: &[4.0, 16.0, 64.0, 200.0],
     params: &[],
     make: |n, dice| {
         let top = DVec3::ONE;
@@ -270,7 +270,7 @@ pub(super) const FINE_CELLS: CaseEntry = CaseEntry {
 ///
 /// ```text
 ///        |  /
-///     ---+-/--      the ray is in the lower right cell for a few millionths of its way:
+///     ---+-/--      the ray is in the lower right cell for some millionths of its way:
 ///        |/ .        a walk that takes the crossings in the wrong order never enters it
 ///       /|
 /// ```
@@ -279,8 +279,8 @@ fn speck(n: f64, dice: &mut Dice) -> ([DVec3; 3], Ray) {
     let (a, b, c) = (first, (first + 1) % 3, (first + 2) % 3);
     let mut along = dice.direction().abs() + DVec3::splat(0.3);
     along /= along.length();
-    // Beyond one plane and before the other by 2 to 8 millionths.
-    let mut beyond = || (2.0 + 6.0 * dice.unit()) * 1e-6;
+    // Beyond one plane and before the other by little more than cells claim beyond their planes.
+    let mut beyond = || (1.3 + 1.2 * dice.unit()) * 1e-6;
     let (da, db) = (beyond(), beyond());
     let mut plane = || f64::from(1 + dice.below(n as u32 - 1)) / n;
     let (pa, pb) = (plane(), plane());
@@ -289,7 +289,7 @@ fn speck(n: f64, dice: &mut Dice) -> ([DVec3; 3], Ray) {
     at[b] = pb - db;
     at[c] = 0.1 + 0.8 * dice.unit();
     let (u, v) = along.any_orthonormal_pair();
-    let size = 0.7e-6;
+    let size = 0.3e-6;
     let corners = [
         at - u * size - v * size,
         at + u * size - v * size,

@@ -115,7 +115,7 @@ impl<W: Wrong> Structure for Exhibit<W> {
         self.0.sound().memory_bytes()
     }
 
-    fn validate(&self, mesh: &Mesh) -> Result<(), String> {
-        self.0.sound().validate(mesh)
+    fn validate(&self, mesh: &Mesh, lanes: &[u32]) -> Result<(), String> {
+        self.0.sound().validate(mesh, lanes)
     }
 }

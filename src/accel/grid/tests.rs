@@ -22,6 +22,7 @@ fn lists(mesh: &Mesh, text: &str, n: u32) -> (Lattice, Lists) {
     let lists = match settings.overlap {
         OverlapTest::Three => Lists::build::<ThreeTest>(&lattice, mesh, u64::MAX),
         OverlapTest::Separating => Lists::build::<Separating>(&lattice, mesh, u64::MAX),
+        OverlapTest::SingleSeparating => Lists::build::<SingleSeparating>(&lattice, mesh, u64::MAX),
         OverlapTest::Boxes => Lists::build::<Boxes>(&lattice, mesh, u64::MAX),
     };
     (lattice, lists.unwrap())

@@ -68,3 +68,27 @@ impl BoxTest for NaiveSlabs {
         (entry, exit)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::testbed::{built, mesh};
+    use crate::geometry::{Hit, Ray, Vec3};
+
+    #[test]
+    fn a_ray_in_a_face_of_the_box_misses_it() {
+        // The box is the unit cube; the ray runs in its face z = 1 and meets the edge there.
+        let mesh = mesh(&[[
+            Vec3::ZERO,
+            Vec3::new(1.0, 0.0, 1.0),
+            Vec3::new(0.0, 1.0, 1.0),
+        ]]);
+        let ray = Ray::new(Vec3::new(-4.0, 0.5, 1.0), Vec3::X);
+        let hit = |accel| {
+            let mut hits = [Hit::MISS];
+            built(&mesh, accel, "woop").closest(&[ray], &mut hits);
+            hits[0]
+        };
+        assert_eq!(hit("bvh").t, 4.5);
+        assert!(!hit("bvh-naive-slab").is_hit());
+    }
+}

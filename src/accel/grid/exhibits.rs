@@ -84,3 +84,66 @@ impl<const ACCUMULATE: bool, const INSIDE_ONLY: bool> Wrong for Mistaken<ACCUMUL
             .lead::<ACCUMULATE, INSIDE_ONLY, _>(ray, mailbox, visitor);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::testbed::{Dice, built_at, mesh, rays};
+    use super::super::lattice::Lattice;
+    use super::super::walk::Walk;
+    use crate::geometry::{Aabb, Hit, Ray, Vec3};
+
+    /// The cells that a ray visits in a unit cube of n³ cells.
+    fn cells<const ACCUMULATE: bool>(ray: &Ray, n: u32) -> Vec<usize> {
+        let bounds = Aabb {
+            min: Vec3::ZERO,
+            max: Vec3::ONE,
+        };
+        let lattice = Lattice::new(bounds, [n; 3]);
+        let mut cells = Vec::new();
+        if let Some(mut walk) = Walk::<ACCUMULATE>::new(&lattice, ray) {
+            loop {
+                cells.push(walk.cell);
+                let exit = walk.exit();
+                if !walk.advance(exit, f32::INFINITY) {
+                    break;
+                }
+            }
+        }
+        cells
+    }
+
+    #[test]
+    fn a_walk_that_accumulates_strays_the_more_often_the_more_cells_there_are() {
+        let mut dice = Dice::new(1);
+        let mut strayed = [0; 2];
+        for _ in 0..2000 {
+            let (from, to) = (dice.vector() * 2.0, dice.vector().abs());
+            let ray = Ray::new(from, to - from);
+            for (strayed, n) in strayed.iter_mut().zip([64, 1024]) {
+                *strayed += u32::from(cells::<true>(&ray, n) != cells::<false>(&ray, n));
+            }
+        }
+        let [few, many] = strayed;
+        assert!(few < 40 && many > 400, "{few}, {many}");
+    }
+
+    #[test]
+    fn hits_in_a_flat_scene_are_lost_where_only_those_inside_the_cell_count() {
+        let corner = |x: f32, y: f32| Vec3::new(x, y, 0.3);
+        let flat: Vec<_> = (0..64_u8)
+            .map(|i| {
+                let (x, y) = (f32::from(i % 8), f32::from(i / 8));
+                [corner(x, y), corner(x + 1.0, y), corner(x, y + 1.0)]
+            })
+            .collect();
+        let mesh = mesh(&flat);
+        let rays = rays(&mesh, 1000, 3);
+        let hits = |accel| {
+            let mut hits = vec![Hit::MISS; rays.len()];
+            built_at(&mesh, accel, Some(8), "woop").closest(&rays, &mut hits);
+            hits.iter().filter(|h| h.is_hit()).count()
+        };
+        let (sound, wrong) = (hits("grid"), hits("grid-inside-only"));
+        assert!(wrong * 4 < sound * 3, "{wrong} of {sound}");
+    }
+}

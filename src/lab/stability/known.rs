@@ -1,12 +1,13 @@
 //! What is expected to fail: data with bounds. A test fails when a failure gets worse, and when one disappears.
 //!
-//! A row of a kernel is about the kernel in brute force. Accelerators have none but exhibits: their rows are measured with
+//! The rows stand in `rows`. A row of a kernel is about the kernel in brute force. Accelerators have none but exhibits: their rows are measured with
 //! `woop`, and with another kernel the mistake that an exhibit shows explains whatever fails.
 
 use crate::registry::Choice;
 
 use super::case::CaseEntry;
 use super::model::Faults;
+use super::rows::{EXHIBITS, KERNELS, MISTAKES, OWN_REASONS, REASONS};
 use super::run::{accel_label, kernel_label};
 
 /// What one method is expected to get wrong on one case.
@@ -30,50 +31,51 @@ pub struct Bound {
 /// The kernel that rows of exhibits are measured with.
 pub(super) const MEASURED_WITH: &str = "woop";
 
-/// The failures of one method for one reason: case, first rung, most faults.
-type Rows = &'static [(&'static str, f64, u64)];
-
-/// Kernels.
-const KERNELS: &[(&str, &str, Rows)] = &[];
-
-/// Accelerators.
-const ACCELS: &[(&str, &str, Rows)] = &[];
+/// The failures of one method: case, first rung, most faults.
+pub(super) type Rows = &'static [(&'static str, f64, u64)];
 
 /// What `kernel` in `accel` is expected to get wrong on `case`; `None` where nothing is, and for parameters that are not
 /// the defaults.
 #[must_use]
 pub fn known_failure(kernel: &Choice, accel: &Choice, case: &CaseEntry) -> Option<KnownFailure> {
     if accel.name == super::BRUTE {
-        return row(KERNELS, &kernel_label(kernel), case);
+        let kernel = kernel_label(kernel);
+        return Some(KnownFailure {
+            bound: Some(bound(KERNELS, &kernel, case)?),
+            reason: reason(&kernel, case.name)?,
+        });
     }
     let label = accel_label(accel);
-    if kernel_label(kernel) == MEASURED_WITH {
-        return row(ACCELS, &label, case);
-    }
-    let (_, reason, _) = ACCELS.iter().find(|(method, ..)| *method == label)?;
-    Some(KnownFailure {
+    let (_, reason) = MISTAKES.iter().find(|(exhibit, _)| *exhibit == label)?;
+    let bound = bound(EXHIBITS, &label, case);
+    let measured = kernel_label(kernel) == MEASURED_WITH;
+    (bound.is_some() || !measured).then_some(KnownFailure {
         reason,
-        bound: None,
+        bound: bound.filter(|_| measured),
     })
 }
 
 /// The row of `table` about `method` and `case`.
-fn row(
-    table: &[(&str, &'static str, Rows)],
-    method: &str,
-    case: &CaseEntry,
-) -> Option<KnownFailure> {
-    let of_method = table.iter().filter(|(name, ..)| *name == method);
-    of_method
-        .flat_map(|(_, reason, rows)| rows.iter().map(move |row| (reason, row)))
-        .find(|(_, (name, ..))| *name == case.name)
-        .map(|(reason, (_, first, most))| KnownFailure {
-            reason,
-            bound: Some(Bound {
-                first: *first,
-                most: *most,
-            }),
-        })
+fn bound(table: &[(&str, Rows)], method: &str, case: &CaseEntry) -> Option<Bound> {
+    let (_, rows) = table.iter().find(|(name, _)| *name == method)?;
+    let (_, first, most) = rows.iter().find(|(name, ..)| *name == case.name)?;
+    Some(Bound {
+        first: *first,
+        most: *most,
+    })
+}
+
+/// Why `kernel` fails on `case`: a reason of its own, else the one that the case has for all.
+fn reason(kernel: &str, case: &str) -> Option<&'static str> {
+    let own = OWN_REASONS
+        .iter()
+        .filter(|(kernels, cases, _)| kernels.contains(&kernel) && cases.contains(&case))
+        .map(|(.., reason)| *reason);
+    let of_case = REASONS
+        .iter()
+        .filter(|(cases, _)| cases.contains(&case))
+        .map(|(_, reason)| *reason);
+    own.chain(of_case).next()
 }
 
 /// Why what was found is not as the list states; `None` where it is.
@@ -109,21 +111,37 @@ mod tests {
     use crate::lab::stability::CASES;
 
     #[test]
-    fn every_row_names_a_method_a_case_and_one_of_its_rungs_once() {
-        let kernels = KERNELS
-            .iter()
-            .map(|row| (row, kernel::parse(row.0).is_ok()));
-        let control = |name: &str| accel::entry(name).is_ok_and(|e| e.control);
-        let accels = ACCELS.iter().map(|row| (row, control(row.0)));
+    fn every_row_names_a_method_a_case_and_one_of_its_rungs_once_and_has_a_reason() {
+        let is_control = |name: &str| accel::entry(name).is_ok_and(|e| e.control);
+        for (kernel, rows) in KERNELS {
+            assert!(kernel::parse(kernel).is_ok(), "{kernel}");
+            for (case, ..) in *rows {
+                assert!(reason(kernel, case).is_some(), "{kernel} on {case}");
+            }
+        }
+        for (exhibit, _) in EXHIBITS {
+            assert!(is_control(exhibit), "{exhibit}");
+            assert!(MISTAKES.iter().any(|(name, _)| name == exhibit));
+        }
         let mut seen = std::collections::BTreeSet::new();
-        for ((method, reason, rows), method_exists) in kernels.chain(accels) {
-            assert!(method_exists, "{method}");
-            assert!(!reason.is_empty(), "{method}");
+        for (method, rows) in KERNELS.iter().chain(EXHIBITS) {
             for (name, first, most) in *rows {
                 let case = CASES.iter().find(|c| c.name == *name).expect(name);
                 assert!(case.rungs.contains(first), "{method}, {name}: {first}");
                 assert!(*most > 0, "{method}, {name}");
                 assert!(seen.insert((method, name)), "{method}, {name}: twice");
+            }
+        }
+    }
+
+    #[test]
+    fn the_exact_kernel_and_sound_accelerators_have_no_rows() {
+        assert!(KERNELS.iter().all(|(kernel, _)| *kernel != "exact"));
+        let exact = kernel::parse("exact").unwrap();
+        for entry in accel::ACCELERATORS.iter().filter(|a| !a.control) {
+            let accel = accel::parse(entry.name).unwrap();
+            for case in CASES {
+                assert_eq!(known_failure(&exact, &accel, case), None, "{}", entry.name);
             }
         }
     }

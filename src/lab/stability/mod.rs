@@ -8,7 +8,7 @@
 //! ```
 //!
 //! A kernel is judged by the oracle in brute force. An accelerator is judged against brute force with the same kernel,
-//! where that is right: so a cell is about one of them, never about both. [`known`] lists what is expected to fail, each
+//! where that is right: so a cell is about one of them, never about both. `rows` lists what is expected to fail, each
 //! row with a bound, the first rung and a reason; more than a row states is a failure, and less is told as well.
 //!
 //! Everything here is the same on every machine and for every number of threads.
@@ -22,6 +22,7 @@ mod judge;
 mod known;
 mod model;
 mod reproduce;
+mod rows;
 mod run;
 mod shapes;
 

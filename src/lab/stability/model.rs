@@ -1,6 +1,6 @@
 //! What the suite finds: a map of cells, one a kernel, accelerator and case.
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 /// The word of a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
@@ -89,8 +89,8 @@ impl Fault {
     }
 }
 
-/// How often answers were wrong, by kind; a ray has at most one fault, its gravest.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+/// How often answers were wrong, by kind; a ray has at most one fault, its gravest. In JSON: the kinds that occur.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Faults {
     /// See [`Fault::Leak`].
     pub leaks: u64,
@@ -106,6 +106,12 @@ pub struct Faults {
     pub occlusion: u64,
     /// Structures, not rays; see [`Fault::Invalid`].
     pub invalid: u64,
+}
+
+impl Serialize for Faults {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.each().into_iter().filter(|(_, count)| *count > 0))
+    }
 }
 
 impl Faults {

@@ -43,3 +43,34 @@ impl Overlap for SingleSeparating {
             .any(separates)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::Separating;
+    use super::*;
+
+    #[test]
+    fn a_triangle_on_a_cell_plane_is_lost_from_both_cells_as_no_sound_test_loses_it() {
+        let mut lost = [0; 2];
+        for i in 1..1000_u32 {
+            // The plane between two cells of a width that f32 does not hold.
+            let (low, width) = (f64::from(0.1_f32), f64::from(i) * 1.37e-3);
+            let plane = f64::from((low + width) as f32);
+            let corners = [
+                DVec3::new(plane, 0.2, 0.2),
+                DVec3::new(plane, 0.8, 0.3),
+                DVec3::new(plane, 0.4, 0.7),
+            ];
+            // The plane as f32 has been rounded, so a sound grid pads its cells; here by an ulp.
+            let half = DVec3::new(width * 0.5, 0.5, 0.5);
+            let centres = [low + width * 0.5, low + width * 1.5].map(|x| DVec3::new(x, 0.5, 0.5));
+            let pad = DVec3::splat(plane * f64::from(f32::EPSILON));
+            let single = centres.map(|c| SingleSeparating::new(corners).touches(c, half));
+            let sound = centres.map(|c| Separating::new(corners).touches(c, half + pad));
+            lost[0] += u32::from(single == [false; 2]);
+            lost[1] += u32::from(sound == [false; 2]);
+        }
+        assert!(lost[0] > 20, "{lost:?}");
+        assert_eq!(lost[1], 0);
+    }
+}

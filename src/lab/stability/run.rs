@@ -41,7 +41,8 @@ pub struct StabilityPlan {
 }
 
 impl Default for StabilityPlan {
-    /// Every case, kernel and accelerator, exhibits included.
+    /// Every case, kernel and accelerator of this program, exhibits included. Peers promise nothing: they are tried only
+    /// where they are named.
     fn default() -> Self {
         let kernels = KERNELS.iter().filter_map(|k| kernel::parse(k.name).ok());
         let own = ACCELERATORS.iter().filter(|a| a.peer.is_none());

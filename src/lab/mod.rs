@@ -39,7 +39,8 @@ mod sweep;
 
 pub use accuracy::{
     Accuracy, AccuracyBounds, AccuracyEvent, AccuracyPlan, AccuracyRecord, ErrorSpread, Judging,
-    Place, PlacedRun, Rate, SelfHits, StartRule, accuracy, accuracy_from,
+    Place, PlacedRun, Rate, SelfHits, StartRule, accuracy, accuracy_from, first_wrong, placed,
+    placed_rays,
 };
 pub use control::Control;
 pub use error::LabError;

@@ -115,12 +115,11 @@ impl Bundle {
     /// As [`Bundle::resume`]; the bundle is one of a sweep.
     pub fn resume_judged(dir: &Path) -> Result<(Self, AccuracyPlan), ReportError> {
         let bundle = Self::open(dir)?;
-        match bundle.report.accuracy_plan() {
-            Some(plan) => Ok((bundle, plan)),
-            None => {
-                let (dir, made_by) = (dir.to_owned(), "sweep");
-                Err(ReportError::OtherExperiment { dir, made_by })
-            }
+        if let Some(plan) = bundle.report.accuracy_plan() {
+            Ok((bundle, plan))
+        } else {
+            let (dir, made_by) = (dir.to_owned(), "sweep");
+            Err(ReportError::OtherExperiment { dir, made_by })
         }
     }
 

@@ -63,13 +63,19 @@ pub fn write_map(
 }
 
 /// A failure on the disk.
-struct Written {
-    files: [PathBuf; 2],
+pub struct Written {
+    /// The scene and the ray.
+    pub files: [PathBuf; 2],
     command: String,
     triangles: usize,
 }
 
-fn write_failure(least: &Reproducer, folder: &Path) -> Result<Written, ExportError> {
+/// Writes a failure into `folder`, which is made where it is missing, as an OBJ and a `.rays` file.
+///
+/// # Errors
+/// The folder or a file cannot be written.
+pub fn write_failure(least: &Reproducer, folder: &Path) -> Result<Written, ExportError> {
+    make(folder)?;
     let stem = stem(least);
     let scene = put(folder, &format!("{stem}.obj"), obj(least))?;
     let rays = folder.join(format!("{stem}.rays"));

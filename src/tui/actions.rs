@@ -3,18 +3,21 @@
 mod charts;
 mod inspect;
 mod overlays;
+mod pareto;
 mod plan;
 mod preview;
 mod reports;
 mod runs;
+mod stability;
 
 use super::keymap::{Action, Place};
-use super::state::{Panel, Phase, Screen, State};
+use super::state::{Experiment, Panel, Phase, Screen, State};
 use super::update::{Effect, quit};
 use crate::lab;
 
 pub(super) use inspect::open_middle;
 pub(super) use overlays::typed;
+pub(super) use stability::reproduced;
 
 /// How many lines a page has, whatever the screen's size.
 const PAGE: isize = 10;
@@ -79,7 +82,9 @@ fn screen(state: &mut State, place: Place, action: Action) -> Vec<Effect> {
             Vec::new()
         }
         _ => match place {
-            Place::Plan => plan::apply(state, action),
+            Place::Plan | Place::OtherPlan => plan::apply(state, action),
+            Place::Points | Place::Configuration => pareto::apply(state, place, action),
+            Place::Map => stability::apply(state, action),
             Place::Runs => runs::apply(state, action),
             Place::Preview | Place::Aim => preview::apply(state, place, action),
             Place::Inspect => inspect::apply(state, action),
@@ -135,48 +140,54 @@ fn help(state: &mut State, action: Action) -> Vec<Effect> {
 }
 
 fn pause(state: &mut State) -> Vec<Effect> {
-    match state.sweep.phase {
-        Phase::Running => {
-            state.sweep.phase = Phase::Paused;
+    match state.phase_mut() {
+        Some(phase @ Phase::Running) => {
+            *phase = Phase::Paused;
             vec![Effect::Pause(true)]
         }
-        Phase::Paused => {
-            state.sweep.phase = Phase::Running;
+        Some(phase @ Phase::Paused) => {
+            *phase = Phase::Running;
             vec![Effect::Pause(false)]
         }
         _ => {
-            state.say("No sweep is running. On screen 1, Enter starts one.");
+            state.say("Nothing is being measured. On screen 1, Enter starts a sweep.");
             Vec::new()
         }
     }
 }
 
 fn stop(state: &mut State) -> Vec<Effect> {
-    match state.sweep.phase {
-        Phase::Running | Phase::Paused => {
-            state.sweep.phase = Phase::Stopping;
-            state.say("Stopping after the sample in progress; finished runs are kept.");
+    match state.phase_mut() {
+        Some(phase @ (Phase::Running | Phase::Paused)) => {
+            *phase = Phase::Stopping;
+            state.say("Stopping after what is in work; what is finished is kept.");
             vec![Effect::Stop]
         }
-        Phase::Stopping => {
+        Some(_) => {
             state.say("Already stopping.");
             Vec::new()
         }
-        _ => {
-            state.say("No sweep is running.");
+        None => {
+            state.say("Nothing is being measured.");
             Vec::new()
         }
     }
 }
 
 fn write(state: &mut State) -> Vec<Effect> {
-    if state.sweep.runs.finished().0 == 0 {
+    let (of, measured) = match state.screen {
+        Screen::Pareto => (Experiment::Accuracy, !state.pareto.runs.is_empty()),
+        _ => (Experiment::Sweep, state.sweep.runs.finished().0 > 0),
+    };
+    if !measured {
         state.say("There is no finished run to write yet.");
         return Vec::new();
     }
     state.say("Writing the report ...");
-    state.sweep.writing = true;
-    vec![Effect::Write]
+    if let Some(kept) = state.kept_mut(of) {
+        kept.writing = true;
+    }
+    vec![Effect::Write(of)]
 }
 
 fn freeze(state: &mut State) -> Vec<Effect> {
@@ -192,6 +203,8 @@ fn freeze(state: &mut State) -> Vec<Effect> {
         }
         state.sweep.runs.take(&event);
     }
+    state.stability.catch_up();
+    state.pareto.catch_up(state.clock);
     Vec::new()
 }
 
@@ -208,7 +221,11 @@ fn samples(state: &mut State, factor: f64) -> Vec<Effect> {
     Vec::new()
 }
 
-/// Moves the keys to a panel of the sweep screen; an expanded panel gives way.
+/// Moves the keys to a panel of the screen that is shown.
 fn focus(state: &mut State, panel: Panel) {
-    state.panel = panel;
+    match state.screen {
+        Screen::Pareto => state.pareto.panel = panel,
+        Screen::Stability => state.stability.panel = panel,
+        _ => state.panel = panel,
+    }
 }

@@ -2,23 +2,24 @@
 
 use std::io;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use super::examiner::Examiner;
 use super::pacer::Pacer;
-use super::runner::{self, Runner, lock};
+use super::runner::{self, Inbox, Keeping, Runner, Work, lock};
 use super::signals::{self, Signal, Signals};
-use super::state::State;
+use super::state::{Experiment, State};
 use super::steering::Steering;
 use super::studio::Studio;
 use super::tty::Tty;
 use super::update::{Effect, Event, update};
-use super::{TuiError, input, shelf};
+use super::{TuiError, input, shelf, trials};
 use crate::lab::Plan;
 use crate::preview::ColorMode;
-use crate::report::{Provenance, Report};
+use crate::report::Provenance;
 
 /// What wakes the UI thread.
 pub(super) enum Message {
@@ -69,8 +70,8 @@ pub(super) fn run(
         examiner: Examiner::spawn(plan.memory_limit, steering.clone(), to.clone()),
         steering,
         to: to.clone(),
-        runner: None,
-        plan: plan.clone(),
+        runners: Vec::new(),
+        inbox: Inbox::default(),
         pacer: Pacer::new(),
         resumed: None,
     };
@@ -91,9 +92,9 @@ struct App {
     examiner: Examiner,
     steering: Steering,
     to: Sender<Message>,
-    runner: Option<Runner>,
-    /// The plan of the last sweep.
-    plan: Plan,
+    /// The last experiment of each kind.
+    runners: Vec<(Experiment, Work, Runner)>,
+    inbox: Inbox,
     pacer: Pacer,
     /// When the program went on after it had suspended itself.
     resumed: Option<Instant>,
@@ -144,17 +145,14 @@ impl App {
 
     /// Takes in what the sweep told since the last look.
     fn read_inbox(&mut self, state: &mut State) {
-        let Some(runner) = &self.runner else {
-            return;
-        };
-        let events = std::mem::take(&mut *lock(&runner.inbox));
+        let events = std::mem::take(&mut *lock(&self.inbox));
         let seconds = self.start.elapsed().as_secs_f64();
         // While a sweep runs its clock goes on, whether it tells something or not.
-        let ticked = state.sweep.is_running() && seconds - state.clock >= GLANCE.as_secs_f64();
+        let ticked = state.running().is_some() && seconds - state.clock >= GLANCE.as_secs_f64();
         if ticked || !events.is_empty() {
             update(state, Event::Clock(seconds));
             for event in events {
-                update(state, Event::Lab(event));
+                update(state, event);
             }
             if !state.frozen {
                 self.pacer.stale();
@@ -216,18 +214,30 @@ impl App {
 
     fn perform(&mut self, state: &State, effect: Effect) {
         match effect {
-            Effect::Start(plan) => {
-                self.plan = (*plan).clone();
-                self.runner = Some(Runner::spawn(
-                    *plan,
+            Effect::Start(work) => {
+                let of = work.experiment();
+                self.runners.retain(|(runner_of, ..)| *runner_of != of);
+                let runner = Runner::spawn(
+                    (*work).clone(),
                     state.results.clone(),
                     self.steering.clone(),
+                    Arc::clone(&self.inbox),
                     self.to.clone(),
-                ));
+                );
+                self.runners.push((of, *work, runner));
+            }
+            Effect::TryAll(plan) => trials::spawn(
+                *plan,
+                self.steering.clone(),
+                Arc::clone(&self.inbox),
+                self.to.clone(),
+            ),
+            Effect::Reproduce(wanted) => {
+                trials::reproduce(*wanted, state.results.clone(), self.to.clone());
             }
             Effect::Pause(paused) => self.steering.pause(paused),
             Effect::Stop => self.steering.stop(),
-            Effect::Write => self.write(state),
+            Effect::Write(of) => self.write(state, of),
             Effect::Render(request) => self.studio.ask(*request),
             Effect::Inspect(request) => self.examiner.ask(*request),
             Effect::List => shelf::list(state.results.clone(), self.to.clone()),
@@ -236,34 +246,32 @@ impl App {
         }
     }
 
-    /// Writes what is measured so far: into the bundle, or into a new one where that failed.
-    fn write(&self, state: &State) {
+    /// Writes what an experiment has measured so far: into its bundle, or into a new one where that failed.
+    fn write(&self, state: &State, of: Experiment) {
         let (steering, to) = (self.steering.clone(), self.to.clone());
-        if let Some(runner) = &self.runner
-            && state.sweep.unsaved.is_none()
-        {
+        let Some((_, work, runner)) = self.runners.iter().find(|(o, ..)| *o == of) else {
+            return;
+        };
+        let (kept, runs) = match of {
+            Experiment::Accuracy => (&state.pareto.kept, state.pareto.runs.clone()),
+            _ => (&state.sweep.kept, state.sweep.runs.complete()),
+        };
+        if kept.unsaved.is_none() {
             runner.write(steering, to);
             return;
         }
-        let runs = state.sweep.runs.complete();
-        let (plan, results) = (self.plan.clone(), state.results.clone());
+        let (work, results) = (work.clone(), state.results.clone());
         thread::spawn(move || {
             let _hold = steering.hold(|| false);
             let command = std::env::args().collect();
-            let event = match Provenance::gather(&plan, command) {
+            let keeping = match Provenance::gather(work.plan(), command) {
                 Ok(provenance) => {
-                    let report = Report {
-                        schema: Report::SCHEMA.to_owned(),
-                        judged: None,
-                        provenance,
-                        config: plan,
-                        runs,
-                    };
-                    runner::save(&report, &results)
+                    let report = work.report(provenance, runs);
+                    runner::save(&work, &report, &results)
                 }
-                Err(error) => Event::BundleFailed(error.to_string()),
+                Err(error) => Keeping::Failed(error.to_string()),
             };
-            let _ = to.send(Message::News(event));
+            let _ = to.send(Message::News(Event::Kept(of, keeping)));
         });
     }
 
@@ -293,18 +301,18 @@ impl App {
     fn close(&self, state: &State) {
         Tty::release();
         self.steering.stop();
-        let Some(runner) = &self.runner else {
-            return;
-        };
+        let finished = || self.runners.iter().all(|(.., runner)| runner.is_finished());
         let begin = Instant::now();
-        if !runner.is_finished() {
+        if !finished() {
             eprintln!("raylab: writing the report ...");
         }
-        while !runner.is_finished() && begin.elapsed() < PATIENCE {
+        while !finished() && begin.elapsed() < PATIENCE {
             thread::sleep(Duration::from_millis(10));
         }
-        if let Some(dir) = &state.sweep.bundle {
-            eprintln!("raylab: the report is in {}", dir.display());
+        for kept in [&state.sweep.kept, &state.pareto.kept] {
+            if let Some(dir) = &kept.bundle {
+                eprintln!("raylab: the report is in {}", dir.display());
+            }
         }
     }
 }

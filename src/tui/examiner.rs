@@ -9,17 +9,17 @@ use std::thread;
 
 use super::app::Message;
 use super::desk::Desk;
-use super::inspect::{Aim, Examined, InspectNews, Request, Side, Source};
+use super::inspect::{Aim, Examined, InspectNews, Made, Request, Side, Source};
 use super::slice::{Frame, Plane, Segment};
 use super::steering::Steering;
 use super::studio::panic_message;
 use super::update::Event;
 use crate::accel::{self, Accelerator};
 use crate::geometry::{Ray, Vec3};
-use crate::lab::{self, Inspection, NRule, Subject};
+use crate::lab::{self, Inspection, NRule, Place, Subject};
 use crate::oracle::Oracle;
 use crate::registry::Choice;
-use crate::scene::{self, Scene};
+use crate::scene::{self, Camera, Material, Mesh, Scene};
 
 /// Structures that are kept, so that going back to one is quick.
 const KEPT: usize = 4;
@@ -61,7 +61,7 @@ impl Examiner {
 /// A scene with its oracle.
 struct Stage {
     source: Source,
-    scene: Arc<Scene>,
+    scene: Scene,
     oracle: Oracle,
 }
 
@@ -113,7 +113,7 @@ impl Worker {
 
     fn serve(&mut self, request: &Request) -> Result<(), String> {
         let steering = self.steering.clone();
-        if steering.is_running() {
+        if steering.is_timed() {
             self.doing(request, "waits for a gap in the measurement");
         }
         let Some(_hold) = steering.hold(|| self.desk.cancelled()) else {
@@ -123,11 +123,36 @@ impl Worker {
         let Some(stage) = &self.stage else {
             return Ok(());
         };
-        let ray = aimed(&stage.scene, &request.subject.aim);
+        let ray = match &request.subject.aim {
+            Aim::Ray(ray) => *ray,
+            &Aim::Point {
+                orbit,
+                at: (x, y),
+                size: (width, height),
+            } => {
+                let camera =
+                    (stage.scene.camera).orbited(orbit.azimuth, orbit.elevation, orbit.zoom);
+                camera.ray(x, y, width, height)
+            }
+            Aim::Wrong { rays, count, seed } => {
+                let (rays, asked) = (rays.clone(), (*count, *seed));
+                let Some(ray) = self.wrong(request, &rays, asked)? else {
+                    return Ok(());
+                };
+                self.tell(InspectNews::Ray {
+                    serial: request.serial,
+                    ray,
+                });
+                ray
+            }
+        };
+        let Some(stage) = &self.stage else {
+            return Ok(());
+        };
         if !ray.is_valid() {
             return Err("the view has no ray there; choose another point".to_owned());
         }
-        let outlines = Arc::new(outlines(&stage.scene, &ray));
+        let outlines = Arc::new(outlines(&stage.scene.mesh, &ray));
         for (side, wanted) in request.sides.iter().enumerate() {
             if self.desk.cancelled() {
                 return Ok(());
@@ -151,11 +176,12 @@ impl Worker {
         self.structures.clear();
         self.stage = None;
         let scene = match source {
-            Source::Spec(spec) => {
+            Source::Spec(spec, place) => {
                 self.doing(request, format!("loading {spec}"));
-                Arc::new(scene::load(spec).map_err(|error| error.to_string())?)
+                let scene = scene::load(spec).map_err(|error| error.to_string())?;
+                lab::placed(&scene, *place).map_err(|error| error.to_string())?
             }
-            Source::Made(made) => Arc::clone(&made.scene),
+            Source::Made(made) => bare(made),
         };
         self.stage = Some(Stage {
             source: source.clone(),
@@ -163,6 +189,36 @@ impl Worker {
             scene,
         });
         Ok(())
+    }
+
+    /// The first ray of a set that the accelerator at the left decides wrongly; `None` when given up.
+    fn wrong(
+        &mut self,
+        request: &Request,
+        rays: &str,
+        (count, seed): (usize, u64),
+    ) -> Result<Option<Ray>, String> {
+        self.build(request, &request.sides[0])?;
+        self.doing(request, format!("asking the oracle about {rays} rays"));
+        let (Some(stage), Some(structure)) = (&self.stage, self.structures.first()) else {
+            return Err("there is no scene".to_owned());
+        };
+        let place = match &stage.source {
+            Source::Spec(_, place) => *place,
+            Source::Made(_) => Place::ITS_OWN,
+        };
+        let set = lab::placed_rays(&stage.scene, place, rays, count, seed);
+        let set = set.map_err(|error| error.to_string())?;
+        let (mesh, accel) = (&stage.scene.mesh, structure.accel.as_ref());
+        let given_up = || self.desk.cancelled();
+        let found = lab::first_wrong(mesh, &stage.oracle, accel, &set.rays, given_up);
+        match found {
+            Some(at) => Ok(Some(set.rays[at])),
+            None if self.desk.cancelled() => Ok(None),
+            None => Err(format!(
+                "none of the {rays} rays is decided wrongly here; Esc goes back"
+            )),
+        }
     }
 
     /// Follows the ray through one accelerator.
@@ -185,8 +241,8 @@ impl Worker {
         };
         let inspection = lab::inspect(&subject, structure.accel.as_ref(), &stage.oracle, ray);
         Ok(Examined {
-            corners: corners(&stage.scene, &inspection),
-            reach: reach(&stage.scene, ray),
+            corners: corners(&stage.scene.mesh, &inspection),
+            reach: reach(&stage.scene.mesh, ray),
             inspection,
             ray: *ray,
             outlines: Arc::clone(outlines),
@@ -225,45 +281,44 @@ impl Worker {
     }
 }
 
-fn aimed(scene: &Scene, aim: &Aim) -> Ray {
-    match *aim {
-        Aim::Ray(ray) => ray,
-        Aim::Point {
-            orbit,
-            at: (x, y),
-            size: (width, height),
-        } => {
-            let camera = scene
-                .camera
-                .orbited(orbit.azimuth, orbit.elevation, orbit.zoom);
-            camera.ray(x, y, width, height)
-        }
+/// A scene of triangles alone.
+fn bare(made: &Made) -> Scene {
+    Scene {
+        name: made.name.clone(),
+        about: String::new(),
+        mesh: Arc::clone(&made.mesh),
+        materials: vec![Material::default()],
+        material_of: vec![0; made.mesh.len()],
+        lights: Vec::new(),
+        camera: Camera::framing(made.mesh.bounds(), Vec3::Y),
+        background: Vec3::ZERO,
+        warnings: Vec::new(),
     }
 }
 
 /// Where the planes through the ray cut the scene; empty for an axis along the ray.
-fn outlines(scene: &Scene, ray: &Ray) -> [Vec<Segment>; 3] {
+fn outlines(mesh: &Mesh, ray: &Ray) -> [Vec<Segment>; 3] {
     Plane::ALL.map(|plane| {
         Frame::new(ray, plane).map_or_else(Vec::new, |frame| {
-            let all = 0..scene.mesh.len() as u32;
-            let cuts = all.flat_map(|prim| frame.cut(&scene.mesh.corners(prim)));
+            let all = 0..mesh.len() as u32;
+            let cuts = all.flat_map(|prim| frame.cut(&mesh.corners(prim)));
             cuts.take(MOST_SEGMENTS).collect()
         })
     })
 }
 
 /// From where to where the scene reaches along the ray; a length of 1 for a scene without any.
-fn reach(scene: &Scene, ray: &Ray) -> [f64; 2] {
+fn reach(mesh: &Mesh, ray: &Ray) -> [f64; 2] {
     let plane = Plane::across(ray).first().copied();
     let Some(frame) = plane.and_then(|plane| Frame::new(ray, plane)) else {
         return [0.0, 1.0];
     };
-    let corners = scene.mesh.bounds().corners();
+    let corners = mesh.bounds().corners();
     let along = corners.iter().map(|corner| frame.along(*corner));
     let (lo, hi) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| {
         (lo.min(x), hi.max(x))
     });
-    if scene.mesh.is_empty() || hi <= lo {
+    if mesh.is_empty() || hi <= lo {
         let middle = if lo.is_finite() { lo } else { 0.5 };
         [middle - 0.5, middle + 0.5]
     } else {
@@ -272,7 +327,7 @@ fn reach(scene: &Scene, ray: &Ray) -> [f64; 2] {
 }
 
 /// The corners of what was offered: all that was hit, and of the rest what came first.
-fn corners(scene: &Scene, inspection: &Inspection) -> Vec<(u32, [Vec3; 3])> {
+fn corners(mesh: &Mesh, inspection: &Inspection) -> Vec<(u32, [Vec3; 3])> {
     let tests = || inspection.steps.iter().flat_map(|step| &step.tests);
     let hit = tests().filter(|test| test.t.is_some());
     let mut prims: BTreeSet<u32> = hit.take(MOST_CORNERS).map(|test| test.prim).collect();
@@ -285,7 +340,7 @@ fn corners(scene: &Scene, inspection: &Inspection) -> Vec<(u32, [Vec3; 3])> {
     prims.extend(inspection.truth.prims.iter().take(MOST_CORNERS));
     prims
         .into_iter()
-        .map(|prim| (prim, scene.mesh.corners(prim)))
+        .map(|prim| (prim, mesh.corners(prim)))
         .collect()
 }
 
@@ -349,7 +404,10 @@ mod tests {
     #[test]
     fn both_accelerators_follow_the_same_ray_to_the_same_answer() {
         let (examiner, from) = examiner();
-        examiner.ask(request(Source::Spec("teapot:4".to_owned()), MIDDLE));
+        examiner.ask(request(
+            Source::Spec("teapot:4".to_owned(), Place::ITS_OWN),
+            MIDDLE,
+        ));
         let sides = found(&told(&from));
         assert_eq!(sides.len(), 2);
         assert_eq!(sides[0].ray, sides[1].ray);
@@ -373,20 +431,50 @@ mod tests {
     #[test]
     fn a_scene_that_was_made_needs_no_name_and_one_that_is_missing_says_so() {
         let (examiner, from) = examiner();
-        let made = super::super::inspect::Made {
+        let made = Made {
             name: "case".to_owned(),
-            scene: Arc::new(scene::load("one").unwrap()),
+            mesh: scene::load("one").unwrap().mesh,
         };
         let ray = Ray::new(Vec3::new(0.1, 0.1, 5.0), Vec3::NEG_Z);
         examiner.ask(request(Source::Made(made), Aim::Ray(ray)));
         let sides = found(&told(&from));
         assert_eq!((sides.len(), sides[0].ray), (2, ray));
-        examiner.ask(request(Source::Spec("missing.obj".to_owned()), MIDDLE));
+        examiner.ask(request(
+            Source::Spec("missing.obj".to_owned(), Place::ITS_OWN),
+            MIDDLE,
+        ));
         let news = told(&from);
         let Some(InspectNews::Failed { why, .. }) = news.last() else {
             panic!("{news:?}");
         };
         assert!(why.contains("missing.obj"));
+    }
+
+    #[test]
+    fn a_ray_that_is_decided_wrongly_is_found_and_stays_the_ray() {
+        let (examiner, from) = examiner();
+        let far = Place {
+            offset: 1e4,
+            scale: 1.0,
+        };
+        let mut request = request(
+            Source::Spec("sphereflake:1".to_owned(), far),
+            Aim::Wrong {
+                rays: "edge".to_owned(),
+                count: 4096,
+                seed: 1,
+            },
+        );
+        request.subject.kernel = crate::kernel::parse("sheet-signed").unwrap();
+        examiner.ask(request);
+        let news = told(&from);
+        let ray = news.iter().find_map(|news| match news {
+            InspectNews::Ray { ray, .. } => Some(*ray),
+            _ => None,
+        });
+        let sides = found(&news);
+        assert_eq!(Some(sides[0].ray), ray);
+        assert!(!sides[0].inspection.right);
     }
 
     #[test]
@@ -403,7 +491,7 @@ mod tests {
             kernel: &kernel,
         };
         let inspection = lab::inspect(&subject, &*built, &Oracle::new(&scene.mesh), &ray);
-        let kept = corners(&scene, &inspection);
+        let kept = corners(&scene.mesh, &inspection);
         assert!(kept.len() <= 2 * MOST_CORNERS);
         let hit = inspection.hit.unwrap().prim;
         assert!(kept.iter().any(|(prim, _)| *prim == hit));
@@ -412,7 +500,7 @@ mod tests {
     #[test]
     fn an_empty_scene_has_a_reach_that_can_be_drawn() {
         let scene = scene::load("empty").unwrap();
-        let [lo, hi] = reach(&scene, &Ray::new(Vec3::ZERO, Vec3::X));
+        let [lo, hi] = reach(&scene.mesh, &Ray::new(Vec3::ZERO, Vec3::X));
         assert!(lo < hi && (hi - lo).is_finite());
     }
 }

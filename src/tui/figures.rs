@@ -30,6 +30,12 @@ pub fn figure(x: f64) -> String {
     }
 }
 
+/// A share in percent: `0.018 %`, `12 %`, `0 %`.
+#[must_use]
+pub fn percent(share: f64) -> String {
+    format!("{} %", figure(share * 100.0))
+}
+
 /// A number with so many digits that it can be told from others of a range that is `span` wide: four beyond the span's
 /// first, and at most those of an `f64`.
 #[must_use]

@@ -1,17 +1,22 @@
 //! States and events that tests draw and act on.
 
 use std::path::PathBuf;
+use std::sync::OnceLock;
 
 use super::app::Message;
 use super::examiner::Examiner;
 use super::keymap::Key;
+use super::runner::Keeping;
 use super::runs::Runs;
-use super::state::{Phase, State, Sweep};
+use super::state::{Experiment, Phase, Screen, State, Sweep};
 use super::steering::Steering;
 use super::update::{Effect, Event, update};
 use crate::accel::{self, StructureStats};
 use crate::kernel;
-use crate::lab::{self, Checksum, NRule, PerRay, Plan, RunConfig, RunRecord, Spread, StopReason};
+use crate::lab::stability::{StabilityEvent, StabilityPlan, stability};
+use crate::lab::{
+    self, Checksum, Control, NRule, PerRay, Plan, RunConfig, RunRecord, Spread, StopReason,
+};
 use crate::preview::ColorMode;
 
 /// A state at the start, without colour, in a small terminal.
@@ -158,7 +163,10 @@ pub fn complete(state: State) -> State {
     update(&mut state, Event::Lab(lab::Event::Ended { stopped: false }));
     update(
         &mut state,
-        Event::BundleWritten(PathBuf::from("results/2026-11-22-teapot")),
+        Event::Kept(
+            Experiment::Sweep,
+            Keeping::Written(PathBuf::from("results/2026-11-22-teapot")),
+        ),
     );
     assert_eq!(state.sweep.phase, Phase::Complete);
     state
@@ -186,5 +194,62 @@ pub fn inspected_in(mut state: State) -> State {
         };
         update(&mut state, event);
     }
+    state
+}
+
+/// The stability screen with a map of two kernels in two accelerators on three cases, made once for all tests.
+pub fn tried() -> State {
+    tried_in(sized(120, 40))
+}
+
+/// The same in `state`'s terminal.
+pub fn tried_in(mut state: State) -> State {
+    static TOLD: OnceLock<Vec<StabilityEvent>> = OnceLock::new();
+    let plan = StabilityPlan {
+        cases: vec!["ordinary", "closed-edges", "far-origins"],
+        kernels: ["woop", "moller-trumbore"]
+            .map(|k| kernel::parse(k).unwrap())
+            .to_vec(),
+        accels: vec![accel::parse("grid").unwrap()],
+        threads: 1,
+        ..StabilityPlan::default()
+    };
+    let told = TOLD.get_or_init(|| {
+        let mut told = Vec::new();
+        stability(&plan, &Control::default(), &mut |event| told.push(event)).unwrap();
+        told
+    });
+    state.screen = Screen::Stability;
+    state.stability.begin(&plan, 0.0);
+    for event in told {
+        update(&mut state, Event::Trial(event.clone()));
+    }
+    update(&mut state, Event::TrialsEnded(Ok(false)));
+    state
+}
+
+/// The Pareto screen with four kernels judged at two offsets.
+pub fn judged() -> State {
+    judged_in(sized(120, 40))
+}
+
+/// The same in `state`'s terminal.
+pub fn judged_in(mut state: State) -> State {
+    state.screen = Screen::Pareto;
+    let plan = state.pareto.plan.accuracy_plan().unwrap();
+    state.pareto.begin(&plan, 0.0);
+    for offset in [0.0, 1e4] {
+        for (kernel, speed, wrong) in [
+            ("woop", 10.0, 0),
+            ("moller-trumbore", 12.0, 300),
+            ("sheet-signed", 9.0, 400),
+            ("sheet-unsigned", 9.5, 0),
+        ] {
+            let wrong = wrong + u64::from(offset > 0.0 && kernel != "woop") * 5000;
+            let run = crate::report::fixture::judged(kernel, offset, speed, wrong);
+            state.pareto.runs.push(run);
+        }
+    }
+    state.pareto.progress.end(false, 9.0);
     state
 }

@@ -7,31 +7,31 @@ use super::picture::{Orbit, next_accel, next_kernel, next_n};
 use super::slice::{Plane, Segment};
 use crate::accel;
 use crate::geometry::{Ray, Vec3};
-use crate::lab::{Inspection, NRule, Plan};
+use crate::lab::{Inspection, NRule, Place};
 use crate::registry::Choice;
-use crate::scene::Scene;
+use crate::scene::Mesh;
 
 /// Where the triangles come from.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Source {
-    /// A scene spec.
-    Spec(String),
+    /// A scene spec, and where the scene is put.
+    Spec(String, Place),
     /// A scene that was made for the purpose.
     Made(Made),
 }
 
-/// A scene that has no spec.
+/// Triangles that have no spec.
 #[derive(Clone)]
 pub struct Made {
-    /// What it is called.
+    /// What they are called.
     pub name: String,
-    /// The scene itself.
-    pub scene: Arc<Scene>,
+    /// The triangles.
+    pub mesh: Arc<Mesh>,
 }
 
 impl PartialEq for Made {
     fn eq(&self, other: &Self) -> bool {
-        self.name == other.name && Arc::ptr_eq(&self.scene, &other.scene)
+        self.name == other.name && Arc::ptr_eq(&self.mesh, &other.mesh)
     }
 }
 
@@ -46,8 +46,17 @@ impl Source {
     #[must_use]
     pub fn name(&self) -> &str {
         match self {
-            Self::Spec(spec) => spec,
+            Self::Spec(spec, _) => spec,
             Self::Made(made) => &made.name,
+        }
+    }
+
+    /// The same with its place, where that is not its own: `teapot moved by 1e4`.
+    #[must_use]
+    pub fn title(&self) -> String {
+        match self {
+            Self::Spec(spec, place) if *place != Place::ITS_OWN => format!("{spec} {place}"),
+            other => other.name().to_owned(),
         }
     }
 }
@@ -66,6 +75,15 @@ pub enum Aim {
     },
     /// This one, which is valid.
     Ray(Ray),
+    /// The first of a ray set that the accelerator at the left decides wrongly.
+    Wrong {
+        /// Ray set spec.
+        rays: String,
+        /// Rays asked for.
+        count: usize,
+        /// Seed of the set.
+        seed: u64,
+    },
 }
 
 /// What is looked at.
@@ -145,6 +163,13 @@ pub enum InspectNews {
         serial: u64,
         /// E.g. "building bvh".
         what: String,
+    },
+    /// The ray that was looked for.
+    Ray {
+        /// Of the request.
+        serial: u64,
+        /// The ray.
+        ray: Ray,
     },
     /// A side is done, or cannot be; why.
     Side {
@@ -262,6 +287,7 @@ impl Inspect {
         };
         match news {
             InspectNews::Doing { serial: of, what } if of == serial => self.doing = what,
+            InspectNews::Ray { serial: of, ray } if of == serial => self.settle(ray),
             InspectNews::Side {
                 serial: of,
                 side,
@@ -279,6 +305,14 @@ impl Inspect {
                 self.error = Some(why);
             }
             _ => {}
+        }
+    }
+
+    /// From now on it is this ray, whatever accelerator and kernel are chosen.
+    fn settle(&mut self, ray: Ray) {
+        let asked = self.asked.as_mut().map(|asked| &mut asked.subject);
+        for subject in self.subject.iter_mut().chain(asked) {
+            subject.aim = Aim::Ray(ray);
         }
     }
 
@@ -362,14 +396,5 @@ impl Inspect {
 impl Default for Inspect {
     fn default() -> Self {
         Self::new()
-    }
-}
-
-/// The resolution that a plan asks for, where it asks for just one.
-#[must_use]
-pub fn only_n(plan: &Plan) -> NRule {
-    match plan.n.as_slice() {
-        [n] => *n,
-        _ => NRule::Auto,
     }
 }

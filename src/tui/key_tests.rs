@@ -6,8 +6,9 @@ use super::fixture;
 use super::keymap::{self, Action, Key, Place};
 use super::overlay::{Overlay, Pick, Purpose, TextField};
 use super::plan_editor::Field;
+use super::runner::{Keeping, Work};
 use super::screens::details;
-use super::state::{BundleRow, ChartLine, Opened, Phase, Screen, State};
+use super::state::{BundleRow, ChartLine, Experiment, Opened, Phase, Screen, State};
 use super::update::{Effect, Event, update};
 use crate::report::Report;
 
@@ -25,8 +26,8 @@ fn report() -> Report {
     }
 }
 
-/// A state in which `action` in `place` has something to act on.
-fn prepared(place: Place, action: Action) -> State {
+/// Something measured, for `action` in `place` to act on.
+fn measured(place: Place, action: Action) -> State {
     let mut state = fixture::sized(80, 24);
     if place == Place::Inspect {
         state = fixture::inspected_in(state);
@@ -35,15 +36,49 @@ fn prepared(place: Place, action: Action) -> State {
         state.inspect.sides[1].n = crate::lab::NRule::Fixed(8);
         state.inspect.zoom = 1.5;
     }
-    if matches!(action, Action::Pause | Action::Stop) || place == Place::Runs {
+    if matches!(place, Place::Points | Place::Configuration) {
+        state = fixture::judged_in(state);
+        state.pareto.marked = 1;
+        if place == Place::Configuration {
+            press(&mut state, Key::code(crossterm::event::KeyCode::Enter));
+        }
+        if matches!(action, Action::Pause | Action::Stop) {
+            state.pareto.progress.phase = Phase::Running;
+        }
+    } else if matches!(place, Place::Map | Place::OtherPlan) {
+        state = fixture::tried_in(state);
+        (state.stability.row, state.stability.case) = (1, 1);
+        let from_top = [Action::NextFault, Action::PreviousFault];
+        if matches!(action, Action::Down | Action::Last | Action::PageDown)
+            || from_top.contains(&action)
+        {
+            state.stability.row = 0;
+        }
+        state.stability.panel = match place {
+            Place::Map => super::state::Panel::Runs,
+            _ => super::state::Panel::Plan,
+        };
+        state.stability.plan.marked = Field::Accels;
+        if matches!(action, Action::Pause | Action::Stop) {
+            state.stability.progress.phase = Phase::Running;
+        }
+    } else if matches!(action, Action::Pause | Action::Stop) || place == Place::Runs {
         state = fixture::running(state);
     } else if place == Place::Charts {
         state = fixture::complete(state);
     }
+    state
+}
+
+/// A state in which `action` in `place` has something to act on.
+fn prepared(place: Place, action: Action) -> State {
+    let mut state = measured(place, action);
     state.screen = match place {
         Place::Preview | Place::Aim => Screen::Preview,
         Place::Inspect => Screen::Inspect,
         Place::Charts => Screen::Charts,
+        Place::Points | Place::Configuration => Screen::Pareto,
+        Place::Map | Place::OtherPlan => Screen::Stability,
         Place::Reports => Screen::Reports,
         Place::Help => Screen::Help,
         _ => Screen::Sweep,
@@ -136,7 +171,9 @@ fn every_row_of_the_keymap_has_an_effect_wherever_it_is_offered() {
 fn enter_runs_the_plan_as_it_stands_at_the_start() {
     let mut state = fixture::sized(80, 24);
     let effects = press(&mut state, Key::code(crossterm::event::KeyCode::Enter));
-    assert!(matches!(&effects[0], Effect::Start(plan) if **plan == crate::lab::Plan::default()));
+    assert!(
+        matches!(&effects[0], Effect::Start(work) if **work == Work::Sweep(crate::lab::Plan::default()))
+    );
     assert_eq!(state.sweep.phase, Phase::Running);
     let again = press(&mut state, Key::code(crossterm::event::KeyCode::Enter));
     assert!(!again.iter().any(|e| matches!(e, Effect::Start(_))));
@@ -184,7 +221,10 @@ fn ctrl_c_twice_quits_whatever_is_open() {
 #[test]
 fn a_sweep_that_cannot_be_written_is_unsaved_and_asks_before_quitting() {
     let mut state = fixture::running(fixture::sized(80, 24));
-    update(&mut state, Event::BundleFailed("no space".to_owned()));
+    update(
+        &mut state,
+        Event::Kept(Experiment::Sweep, Keeping::Failed("no space".to_owned())),
+    );
     update(
         &mut state,
         Event::Lab(crate::lab::Event::Ended { stopped: false }),
@@ -197,7 +237,13 @@ fn a_sweep_that_cannot_be_written_is_unsaved_and_asks_before_quitting() {
 fn a_sweep_that_cannot_begin_leaves_the_plan_ready() {
     let mut state = fixture::sized(80, 24);
     press(&mut state, Key::code(crossterm::event::KeyCode::Enter));
-    update(&mut state, Event::SweepFailed("no such scene".to_owned()));
+    update(
+        &mut state,
+        Event::Kept(
+            Experiment::Sweep,
+            Keeping::Broken("no such scene".to_owned()),
+        ),
+    );
     assert!(!state.sweep.is_running());
 }
 

@@ -17,6 +17,14 @@ pub enum Place {
     Inspect,
     /// Charts.
     Charts,
+    /// The plan of another experiment than the sweep.
+    OtherPlan,
+    /// The Pareto chart and the list of methods.
+    Points,
+    /// A configuration that was opened there.
+    Configuration,
+    /// The stability map.
+    Map,
     /// Reports.
     Reports,
     /// Help.
@@ -33,7 +41,7 @@ pub enum Place {
 
 impl Place {
     /// All places, in the order in which help lists them.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 16] = [
         Self::Plan,
         Self::Pick,
         Self::Text,
@@ -43,6 +51,10 @@ impl Place {
         Self::Aim,
         Self::Inspect,
         Self::Charts,
+        Self::OtherPlan,
+        Self::Points,
+        Self::Configuration,
+        Self::Map,
         Self::Reports,
         Self::Help,
         Self::Confirm,
@@ -61,6 +73,10 @@ impl Place {
             Self::Aim => "Cursor in the picture",
             Self::Inspect => "Inspect",
             Self::Charts => "Charts",
+            Self::OtherPlan => "Pareto, Stability: plan",
+            Self::Points => "Pareto: methods",
+            Self::Configuration => "Pareto: one configuration",
+            Self::Map => "Stability: map",
             Self::Reports => "Reports",
             Self::Help => "Help",
             Self::Confirm => "Question",

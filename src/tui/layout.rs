@@ -20,7 +20,7 @@ use super::state::{Panel, Screen, State};
 pub const LEAST: (u16, u16) = (60, 18);
 
 /// Rows of the plan with its frame.
-const PLAN_ROWS: u16 = Field::ALL.len() as u16 + 2;
+const PLAN_ROWS: u16 = Field::OF_SWEEP.len() as u16 + 2;
 
 /// The parts of every screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -158,6 +158,95 @@ pub fn inspect(state: &State, body: Rect) -> InspectParts {
     InspectParts { head, sides }
 }
 
+/// The parts of the Pareto screen; those that are not shown have no area.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct ParetoParts {
+    /// What is judged.
+    pub plan: Rect,
+    /// How far it is: two rows.
+    pub progress: Rect,
+    /// What is shown of it: two rows.
+    pub choices: Rect,
+    /// The chart.
+    pub chart: Rect,
+    /// The methods.
+    pub list: Rect,
+}
+
+/// The parts of the Pareto screen. Where there is little room, chart and list take turns: the list is the expanded view.
+#[must_use]
+pub fn pareto(state: &State, body: Rect) -> ParetoParts {
+    let mut parts = ParetoParts::default();
+    let plan = Constraint::Length(Field::OF_ACCURACY.len() as u16 + 2);
+    let (two, rest) = (Constraint::Length(2), Constraint::Fill(1));
+    if state.expanded {
+        [parts.progress, parts.choices, parts.list] =
+            Layout::vertical([two, two, rest]).areas(body);
+    } else if is_large(body) {
+        let left = Constraint::Length((body.width * 2 / 5).clamp(48, 76));
+        let [left, right] = Layout::horizontal([left, rest]).areas(body);
+        [parts.plan, parts.list] = Layout::vertical([plan, rest]).areas(left);
+        [parts.progress, parts.choices, parts.chart] =
+            Layout::vertical([two, two, rest]).areas(right);
+    } else if state.pareto.panel == Panel::Plan {
+        [parts.plan, parts.progress, parts.chart] = Layout::vertical([plan, two, rest]).areas(body);
+    } else {
+        [parts.progress, parts.choices, parts.chart] =
+            Layout::vertical([two, two, rest]).areas(body);
+    }
+    parts
+}
+
+/// The parts of an opened configuration: the picture with its frame, and the figures beside it, without area when the
+/// picture is expanded.
+#[must_use]
+pub fn configuration(state: &State, body: Rect) -> (Rect, Rect) {
+    if state.expanded {
+        return (body, Rect::default());
+    }
+    let side = (body.width / 2).min(64);
+    let [figures, picture] =
+        Layout::horizontal([Constraint::Length(side), Constraint::Fill(1)]).areas(body);
+    (picture, figures)
+}
+
+/// The parts of the stability screen; those that are not shown have no area.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct StabilityParts {
+    /// What is tried.
+    pub plan: Rect,
+    /// How far it is, and what letters mean: two rows.
+    pub progress: Rect,
+    /// The map.
+    pub map: Rect,
+    /// The marked cell.
+    pub cell: Rect,
+}
+
+/// The parts of the stability screen.
+#[must_use]
+pub fn stability(state: &State, body: Rect) -> StabilityParts {
+    let mut parts = StabilityParts::default();
+    let plan = Constraint::Length(Field::OF_STABILITY.len() as u16 + 2);
+    let (progress, rest) = (Constraint::Length(2), Constraint::Fill(1));
+    if state.expanded {
+        [parts.progress, parts.map] = Layout::vertical([progress, rest]).areas(body);
+    } else if is_large(body) {
+        let left = Constraint::Length((body.width * 2 / 5).clamp(44, 76));
+        let [left, right] = Layout::horizontal([left, rest]).areas(body);
+        [parts.plan, parts.cell] = Layout::vertical([plan, rest]).areas(left);
+        [parts.progress, parts.map] = Layout::vertical([progress, rest]).areas(right);
+    } else if state.stability.panel == Panel::Plan {
+        [parts.plan, parts.progress, parts.map] =
+            Layout::vertical([plan, progress, rest]).areas(body);
+    } else {
+        let cell = Constraint::Length(6);
+        [parts.progress, parts.map, parts.cell] =
+            Layout::vertical([progress, rest, cell]).areas(body);
+    }
+    parts
+}
+
 /// Columns and rows of cells in which the screen shows the picture now; `None` where it shows none.
 #[must_use]
 pub fn picture_cells(state: &State) -> Option<(u16, u16)> {
@@ -169,6 +258,7 @@ pub fn picture_cells(state: &State) -> Option<(u16, u16)> {
     let framed = match state.screen {
         Screen::Sweep => sweep(state, body).picture,
         Screen::Preview => preview(state, body).0,
+        Screen::Pareto if state.pareto.opened.is_some() => configuration(state, body).0,
         _ => return None,
     };
     let cells = (

@@ -2,7 +2,7 @@
 
 use crate::accel::{self, ACCELERATORS};
 use crate::kernel;
-use crate::lab::{NRule, Plan};
+use crate::lab::{NRule, Place, Plan};
 use crate::preview::{Cells, SYMBOLS, Symbols};
 use crate::registry::{Choice, Params};
 use crate::scene::SCENES;
@@ -33,6 +33,8 @@ impl Orbit {
 pub struct Wish {
     /// Scene spec.
     pub scene: String,
+    /// Where it is, and how large.
+    pub place: Place,
     /// From where.
     pub orbit: Orbit,
     /// Accelerator.
@@ -78,6 +80,7 @@ impl Wish {
                 .first()
                 .cloned()
                 .unwrap_or_else(|| SCENES[0].name.to_owned()),
+            place: Place::ITS_OWN,
             orbit: Orbit::HOME,
             accel: choice("bvh", ACCELERATORS[0].name, |name| accel::parse(name).ok()),
             n: NRule::Auto,
@@ -133,6 +136,7 @@ impl Wish {
         let scene = (*turned(&scenes, |s| *s == self.scene, steps)).to_owned();
         if scene != self.scene {
             self.scene = scene;
+            self.place = Place::ITS_OWN;
             self.orbit = Orbit::HOME;
         }
     }

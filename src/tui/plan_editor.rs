@@ -1,10 +1,13 @@
 //! The plan as it is edited: each line is a text that a person could have written on the command line; together they
 //! are a [`Plan`], or say line by line why not.
 
-use super::plan_text::{MAX_SAMPLES, count, count_text, n_text, samples, split_specs, threads};
+use super::plan_text::{
+    MAX_SAMPLES, count, count_text, n_text, numbers, numbers_text, samples, split_specs, threads,
+};
 use crate::accel;
 use crate::kernel;
-use crate::lab::{self, Plan};
+use crate::lab::stability::{self, CASES, StabilityPlan};
+use crate::lab::{self, AccuracyPlan, Plan};
 use crate::registry::Choice;
 use crate::scene::{self, SCENES};
 use crate::trace::{self, RAY_SETS};
@@ -28,14 +31,22 @@ pub enum Field {
     Threads,
     /// Fewest and most samples of a run.
     Samples,
+    /// How far the scene is moved.
+    Offsets,
+    /// How much larger the scene is made.
+    Scales,
+    /// Stability cases.
+    Cases,
+    /// With which kernels accelerators are tried.
+    Extent,
 }
 
 /// What can be chosen in a line, with a sentence on it.
 pub type Offer = (String, String);
 
 impl Field {
-    /// All lines from top to bottom.
-    pub const ALL: [Self; 8] = [
+    /// The lines of a sweep's plan, from top to bottom.
+    pub const OF_SWEEP: &[Self] = &[
         Self::Scenes,
         Self::Accels,
         Self::N,
@@ -45,6 +56,31 @@ impl Field {
         Self::Threads,
         Self::Samples,
     ];
+
+    /// The lines of a plan that is judged by the oracle, from top to bottom.
+    pub const OF_ACCURACY: &[Self] = &[
+        Self::Scenes,
+        Self::Rays,
+        Self::Offsets,
+        Self::Scales,
+        Self::Kernels,
+        Self::Accels,
+        Self::N,
+        Self::RayCount,
+        Self::Threads,
+    ];
+
+    /// The lines of the stability suite's plan, from top to bottom.
+    pub const OF_STABILITY: &[Self] = &[
+        Self::Cases,
+        Self::Kernels,
+        Self::Accels,
+        Self::Extent,
+        Self::Threads,
+    ];
+
+    /// How many there are.
+    const COUNT: usize = Self::Extent as usize + 1;
 
     /// Its name on the screen.
     #[must_use]
@@ -58,6 +94,10 @@ impl Field {
             Self::RayCount => "rays a set",
             Self::Threads => "threads",
             Self::Samples => "samples a run",
+            Self::Offsets => "offsets",
+            Self::Scales => "scales",
+            Self::Cases => "cases",
+            Self::Extent => "try them with",
         }
     }
 
@@ -73,6 +113,10 @@ impl Field {
             Self::RayCount => "a number: 65536, 64k or 1M",
             Self::Threads => "a list: 1, 2, max",
             Self::Samples => "fewest..most: 5..30",
+            Self::Offsets => "distances along each axis: 0, 1e4",
+            Self::Scales => "factors, about the origin: 1, 1e-3",
+            Self::Cases => "names of cases, or all",
+            Self::Extent => "quick: woop and exact only; full: every kernel",
         }
     }
 
@@ -96,7 +140,14 @@ impl Field {
                 .filter(|r| r.argument.is_empty())
                 .map(|r| offer(r.name, r.about))
                 .collect(),
-            Self::N | Self::RayCount | Self::Threads | Self::Samples => Vec::new(),
+            Self::Cases => CASES.iter().map(|c| offer(c.name, c.about)).collect(),
+            Self::N
+            | Self::RayCount
+            | Self::Threads
+            | Self::Samples
+            | Self::Offsets
+            | Self::Scales
+            | Self::Extent => Vec::new(),
         }
     }
 
@@ -105,7 +156,7 @@ impl Field {
     pub fn is_list(self) -> bool {
         matches!(
             self,
-            Self::Scenes | Self::Accels | Self::Kernels | Self::Rays
+            Self::Scenes | Self::Accels | Self::Kernels | Self::Rays | Self::Cases
         )
     }
 
@@ -117,8 +168,10 @@ impl Field {
 /// The plan being edited.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlanEditor {
-    texts: [String; 8],
-    errors: [Option<String>; 8],
+    /// Which lines it has, from top to bottom.
+    lines: &'static [Field],
+    texts: [String; Field::COUNT],
+    errors: [Option<String>; Field::COUNT],
     /// What the lines do not say: seed, budget, memory limit.
     base: Plan,
     /// The marked line.
@@ -126,14 +179,43 @@ pub struct PlanEditor {
 }
 
 impl PlanEditor {
-    /// An editor that shows `plan`.
+    /// An editor of the plan of a sweep.
     #[must_use]
     pub fn new(plan: &Plan) -> Self {
+        Self::with(Field::OF_SWEEP, plan)
+    }
+
+    /// An editor of a plan that is judged by the oracle.
+    #[must_use]
+    pub fn of_accuracy(plan: &AccuracyPlan) -> Self {
+        let mut editor = Self::with(Field::OF_ACCURACY, &plan.plan);
+        editor.set(Field::Offsets, &numbers_text(&plan.offsets));
+        editor.set(Field::Scales, &numbers_text(&plan.scales));
+        editor
+    }
+
+    /// An editor of the plan of the stability suite: every case, kernel and accelerator, with the threads of `plan`.
+    #[must_use]
+    pub fn of_stability(plan: &Plan) -> Self {
+        let suite = StabilityPlan::default();
+        let all = Plan {
+            accels: suite.accels,
+            kernels: suite.kernels,
+            ..plan.clone()
+        };
+        let mut editor = Self::with(Field::OF_STABILITY, &all);
+        editor.set(Field::Cases, ALL_CASES);
+        editor.set(Field::Extent, EXTENTS[0]);
+        editor
+    }
+
+    fn with(lines: &'static [Field], plan: &Plan) -> Self {
         let labels = |choices: &[Choice], label: fn(&Choice) -> String| {
             choices.iter().map(label).collect::<Vec<_>>().join(", ")
         };
         let threads: Vec<String> = plan.threads.iter().map(usize::to_string).collect();
         let mut editor = Self {
+            lines,
             texts: [
                 plan.scenes.join(", "),
                 labels(&plan.accels, accel_label),
@@ -143,13 +225,33 @@ impl PlanEditor {
                 count_text(plan.ray_count),
                 threads.join(", "),
                 format!("{}..{}", plan.budget.min_samples, plan.budget.max_samples),
+                String::new(),
+                String::new(),
+                String::new(),
+                String::new(),
             ],
             errors: Default::default(),
             base: plan.clone(),
-            marked: Field::Scenes,
+            marked: lines[0],
         };
         editor.check();
         editor
+    }
+
+    /// Its lines, from top to bottom.
+    #[must_use]
+    pub fn lines(&self) -> &'static [Field] {
+        self.lines
+    }
+
+    /// Moves the mark; whether it could.
+    pub fn step(&mut self, lines: isize) -> bool {
+        let last = self.lines.len() - 1;
+        let at = self.lines.iter().position(|&f| f == self.marked);
+        let from = at.unwrap_or(0);
+        let to = from.saturating_add_signed(lines).min(last);
+        self.marked = self.lines[to];
+        to != from
     }
 
     /// What a line says.
@@ -187,9 +289,8 @@ impl PlanEditor {
     /// The first line that cannot be run.
     #[must_use]
     pub fn first_error(&self) -> Option<(Field, &str)> {
-        Field::ALL
-            .into_iter()
-            .find_map(|field| Some((field, self.error(field)?)))
+        let mut lines = self.lines.iter();
+        lines.find_map(|&field| Some((field, self.error(field)?)))
     }
 
     /// The plan; `None` while a line cannot be run.
@@ -215,8 +316,35 @@ impl PlanEditor {
         Some(plan)
     }
 
+    /// The plan that the oracle judges; `None` while a line cannot be run.
+    #[must_use]
+    pub fn accuracy_plan(&self) -> Option<AccuracyPlan> {
+        Some(AccuracyPlan {
+            plan: self.plan()?,
+            offsets: numbers(self.text(Field::Offsets), 0.0).ok()?,
+            scales: numbers(self.text(Field::Scales), f64::MIN_POSITIVE).ok()?,
+        })
+    }
+
+    /// The plan of the stability suite; `None` while a line cannot be run.
+    #[must_use]
+    pub fn stability_plan(&self) -> Option<StabilityPlan> {
+        if self.first_error().is_some() {
+            return None;
+        }
+        let threads = threads(self.text(Field::Threads)).ok()?;
+        Some(StabilityPlan {
+            cases: cases(&self.items(Field::Cases)).ok()?,
+            kernels: choices(&self.items(Field::Kernels), kernel::parse).ok()?,
+            accels: choices(&self.items(Field::Accels), accel::parse).ok()?,
+            quick: self.text(Field::Extent) == EXTENTS[0],
+            seed: self.base.seed,
+            threads: threads.into_iter().max().unwrap_or(1),
+        })
+    }
+
     fn check(&mut self) {
-        for field in Field::ALL {
+        for &field in self.lines {
             self.errors[field.index()] = self.problem(field);
         }
     }
@@ -237,8 +365,33 @@ impl PlanEditor {
             Field::RayCount => count(text).err(),
             Field::Threads => threads(text).err(),
             Field::Samples => samples(text).err(),
+            Field::Offsets => numbers(text, 0.0).err(),
+            Field::Scales => numbers(text, f64::MIN_POSITIVE).err(),
+            Field::Cases => cases(&items).err(),
+            Field::Extent => (!EXTENTS.contains(&text)).then(|| {
+                let [quick, full] = EXTENTS;
+                format!("'{text}' is neither {quick} nor {full}")
+            }),
         }
     }
+}
+
+/// What stands for every case.
+const ALL_CASES: &str = "all";
+
+/// Accelerators with few kernels, or with all.
+const EXTENTS: [&str; 2] = ["quick", "full"];
+
+/// The names of cases, `all` for every one.
+fn cases(items: &[String]) -> Result<Vec<&'static str>, String> {
+    if items.iter().any(|item| item == ALL_CASES) {
+        return Ok(CASES.iter().map(|case| case.name).collect());
+    }
+    let named = items.iter().map(|name| {
+        let case = stability::case(name).map_err(|why| why.to_string())?;
+        Ok(case.name)
+    });
+    named.collect()
 }
 
 fn first_problem(items: &[String], check: impl Fn(&str) -> Result<(), String>) -> Option<String> {
@@ -309,6 +462,46 @@ mod tests {
             editor.set(field, &good);
             assert_eq!(editor.first_error(), None);
         }
+    }
+
+    #[test]
+    fn the_plan_to_be_judged_has_offsets_and_scales() {
+        let plan = AccuracyPlan {
+            plan: Plan::default(),
+            offsets: vec![0.0, 1e4],
+            scales: vec![1.0, 1e-30],
+        };
+        let mut editor = PlanEditor::of_accuracy(&plan);
+        assert_eq!(editor.accuracy_plan(), Some(plan));
+        for (field, bad) in [
+            (Field::Offsets, "-1"),
+            (Field::Offsets, "NaN"),
+            (Field::Offsets, "1e999"),
+            (Field::Scales, "0"),
+            (Field::Scales, "one"),
+        ] {
+            let good = editor.text(field).to_owned();
+            editor.set(field, bad);
+            assert_eq!(editor.first_error().map(|e| e.0), Some(field), "{bad}");
+            editor.set(field, &good);
+        }
+    }
+
+    #[test]
+    fn the_plan_of_the_suite_has_lines_of_its_own() {
+        let mut editor = PlanEditor::of_stability(&Plan::default());
+        let plan = editor.stability_plan().unwrap();
+        assert_eq!(plan.cases.len(), CASES.len());
+        assert!(plan.quick && plan.kernels.len() == kernel::KERNELS.len());
+        for (field, bad) in [(Field::Cases, "closed-edgs"), (Field::Extent, "some")] {
+            let good = editor.text(field).to_owned();
+            editor.set(field, bad);
+            assert_eq!(editor.first_error().map(|e| e.0), Some(field));
+            assert_eq!(editor.stability_plan(), None);
+            editor.set(field, &good);
+        }
+        editor.set(Field::Extent, "full");
+        assert!(!editor.stability_plan().unwrap().quick);
     }
 
     #[test]

@@ -125,6 +125,39 @@ pub fn samples(text: &str) -> Result<(usize, usize), String> {
     }
 }
 
+/// Reads `0, 1e4`; a number that is named twice comes once.
+///
+/// # Errors
+/// A word that is no finite number, or less than `least`; a sentence.
+pub fn numbers(text: &str, least: f64) -> Result<Vec<f64>, String> {
+    let mut list = Vec::new();
+    for word in text.split(',').map(str::trim) {
+        let number = word.parse::<f64>().ok();
+        match number.filter(|x| x.is_finite() && *x >= least) {
+            Some(x) if list.contains(&x) => {}
+            Some(x) => list.push(x),
+            None => {
+                let bound = if least > 0.0 { "above 0" } else { "from 0 on" };
+                return Err(format!("'{word}' is no number {bound}; write e.g. 1e4"));
+            }
+        }
+    }
+    Ok(list)
+}
+
+/// Numbers as [`numbers`] reads them: `0, 1e4`.
+#[must_use]
+pub fn numbers_text(list: &[f64]) -> String {
+    let text = list.iter().map(|&x| {
+        if x == 0.0 || (1e-2..1e4).contains(&x) {
+            format!("{x}")
+        } else {
+            format!("{x:e}")
+        }
+    });
+    text.collect::<Vec<_>>().join(", ")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,14 +1,15 @@
 //! Screens drawn on a test backend.
 
+use crossterm::event::KeyCode;
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 
 use super::fixture;
-use super::keymap::{self, Place};
+use super::keymap::{self, Key, Place};
 use super::overlay::{Overlay, Pick, Purpose, TextField};
 use super::plan_editor::Field;
 use super::screens::details;
-use super::state::{Panel, Screen, State};
+use super::state::{Panel, Phase, Screen, State};
 use super::update::{Event, update};
 use super::view::view;
 
@@ -41,18 +42,35 @@ fn states(columns: u16, rows: u16) -> Vec<State> {
     for screen in [
         Screen::Preview,
         Screen::Charts,
+        Screen::Pareto,
+        Screen::Stability,
         Screen::Reports,
         Screen::Help,
     ] {
-        for base in [idle(), fixture::running(idle()), fixture::complete(idle())] {
-            states.push(State { screen, ..base });
-        }
+        states.push(State { screen, ..idle() });
+        states.push(State {
+            screen,
+            ..fixture::running(idle())
+        });
+        states.push(State {
+            screen,
+            ..fixture::complete(idle())
+        });
     }
     states.push(fixture::inspected_in(idle()));
     states.push(State {
         screen: Screen::Inspect,
         ..fixture::running(idle())
     });
+    states.push(fixture::judged_in(idle()));
+    let mut opened = fixture::judged_in(idle());
+    update(&mut opened, Event::Key(Key::code(KeyCode::Enter).event()));
+    states.push(opened);
+    states.push(fixture::tried_in(idle()));
+    let mut trying = fixture::tried_in(idle());
+    trying.stability.progress.phase = Phase::Running;
+    trying.stability.turn();
+    states.push(trying);
     let mut aiming = State {
         screen: Screen::Preview,
         ..idle()
@@ -228,6 +246,125 @@ fn the_preview_names_the_key_beside_each_choice() {
         ] {
             assert_contains(&rows, text);
         }
+    }
+}
+
+#[test]
+fn the_inspector_shows_both_sides_with_slice_steps_and_verdict() {
+    for (columns, rows) in [(80, 24), (120, 40), (200, 60)] {
+        let rows = screen(&fixture::inspected_in(fixture::sized(columns, rows)));
+        for text in [
+            "bvh",
+            "grid n=auto",
+            "step 1 of",
+            "ray ×",
+            "▸ ",
+            "leaf",
+            "cell",
+            "t from 0 to inf",
+        ] {
+            assert_contains(&rows, text);
+        }
+        assert_eq!(
+            rows.iter()
+                .map(|row| row.matches("RIGHT").count())
+                .sum::<usize>(),
+            2
+        );
+    }
+}
+
+#[test]
+fn a_narrow_or_expanded_inspector_shows_the_side_that_has_the_keys() {
+    let mut state = fixture::inspected_in(fixture::sized(60, 18));
+    assert!(!contains(&screen(&state), "grid n=auto"));
+    state.inspect.focus = 1;
+    assert_contains(&screen(&state), "grid n=auto");
+    let mut state = fixture::inspected_in(fixture::sized(120, 40));
+    state.expanded = true;
+    assert!(!contains(&screen(&state), "grid n=auto"));
+}
+
+#[test]
+fn the_pareto_chart_names_every_method_and_draws_the_front_and_the_floor() {
+    for (columns, rows) in [(80, 24), (120, 40), (200, 60)] {
+        let rows = screen(&fixture::judged_in(fixture::sized(columns, rows)));
+        for text in [
+            "woop",
+            "moller-trumbore",
+            "sheet-signed",
+            "sheet-unsigned",
+            "3/N =",
+            "none ┤",
+            "Mrays/s",
+            "(1 of 2)",
+            "in its place",
+            "complete in 0:09",
+        ] {
+            assert_contains(&rows, text);
+        }
+        // The front goes from woop to moller-trumbore, and up from there.
+        assert_contains(&rows, "┌──");
+    }
+}
+
+#[test]
+fn a_small_terminal_shows_chart_or_list_and_the_list_tells_what_kind_of_wrong() {
+    let mut state = fixture::judged_in(fixture::sized(80, 24));
+    assert!(!contains(&screen(&state), "methods by"));
+    state.expanded = true;
+    let rows = screen(&state);
+    assert_contains(&rows, "methods by speed");
+    assert_contains(&rows, "front");
+    let mut state = fixture::judged_in(fixture::sized(120, 40));
+    state.expanded = true;
+    let rows = screen(&state);
+    for text in ["leaks", "phantoms", "surface", "swaps", "t ulp 99"] {
+        assert_contains(&rows, text);
+    }
+}
+
+#[test]
+fn an_opened_method_tells_its_rates_and_shows_its_picture() {
+    for (columns, rows) in [(80, 24), (120, 40), (200, 60)] {
+        let mut state = fixture::judged_in(fixture::sized(columns, rows));
+        update(&mut state, Event::Key(Key::code(KeyCode::Enter).event()));
+        assert_eq!(state.picture.wish.kernel.name, "moller-trumbore");
+        let rows = screen(&state);
+        for text in [
+            "moller-trumbore",
+            "wrong",
+            "leaks",
+            "300 of",
+            "front",
+            "teapot · color",
+        ] {
+            assert_contains(&rows, text);
+        }
+    }
+}
+
+#[test]
+fn the_map_has_a_letter_for_each_cell_and_tells_the_marked_one_in_full() {
+    for (columns, rows) in [(80, 24), (120, 40), (200, 60)] {
+        let mut state = fixture::tried_in(fixture::sized(columns, rows));
+        assert!(state.stability.seek(1));
+        let rows = screen(&state);
+        for text in [
+            "map: kernels alone",
+            "▸ moller-trumbore",
+            "fails as known",
+            "leak",
+            "edges",
+            "▾ closed-edges",
+        ] {
+            assert_contains(&rows, text);
+        }
+        let row = rows
+            .iter()
+            .find(|row| row.contains("▸ moller-trumbore"))
+            .unwrap();
+        assert!(row.contains('k') && row.contains('·'), "{row}");
     }
 }
 

@@ -5,15 +5,17 @@ use std::path::PathBuf;
 use super::inspect::Inspect;
 use super::keymap::{Place, Situation};
 use super::overlay::Overlay;
+use super::pareto::Pareto;
 use super::picture::{Picture, Wish};
 use super::plan_editor::PlanEditor;
 use super::runs::Runs;
+use super::stability::Stability;
 use super::table_view::TableView;
 use super::theme::Theme;
 use crate::lab::{self, Plan};
 use crate::preview::ColorMode;
-use crate::report::Report;
 use crate::report::series::Quantity;
+use crate::report::{Report, Run};
 
 /// A screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -26,6 +28,10 @@ pub enum Screen {
     Inspect,
     /// Curves over n.
     Charts,
+    /// Speed against wrong decisions.
+    Pareto,
+    /// Where each kernel and accelerator breaks.
+    Stability,
     /// Bundles on disk.
     Reports,
     /// All keys.
@@ -34,11 +40,13 @@ pub enum Screen {
 
 impl Screen {
     /// All screens; the key of a screen is its place here, from 1.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 8] = [
         Self::Sweep,
         Self::Preview,
         Self::Inspect,
         Self::Charts,
+        Self::Pareto,
+        Self::Stability,
         Self::Reports,
         Self::Help,
     ];
@@ -51,6 +59,8 @@ impl Screen {
             Self::Preview => "Preview",
             Self::Inspect => "Inspect",
             Self::Charts => "Charts",
+            Self::Pareto => "Pareto",
+            Self::Stability => "Stability",
             Self::Reports => "Reports",
             Self::Help => "Help",
         }
@@ -99,6 +109,47 @@ pub enum Phase {
     Stopped,
 }
 
+impl Phase {
+    /// Whether something is under way, paused or about to stop included.
+    #[must_use]
+    pub fn is_running(self) -> bool {
+        matches!(self, Self::Running | Self::Paused | Self::Stopping)
+    }
+}
+
+/// What is measured in the background: one at a time, for they would disturb each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Experiment {
+    /// Speed over a plan.
+    Sweep,
+    /// Speed and wrong decisions.
+    Accuracy,
+    /// Where methods break.
+    Stability,
+}
+
+impl Experiment {
+    /// What it is called while it runs.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Sweep => "A sweep",
+            Self::Accuracy => "Judging accuracy",
+            Self::Stability => "The stability suite",
+        }
+    }
+
+    /// The screen that it is on.
+    #[must_use]
+    pub fn screen(self) -> Screen {
+        match self {
+            Self::Sweep => Screen::Sweep,
+            Self::Accuracy => Screen::Pareto,
+            Self::Stability => Screen::Stability,
+        }
+    }
+}
+
 /// The sweep.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sweep {
@@ -114,6 +165,13 @@ pub struct Sweep {
     pub began: f64,
     /// When it ended.
     pub ended: Option<f64>,
+    /// What becomes of it.
+    pub kept: Kept,
+}
+
+/// What becomes of what an experiment measures.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Kept {
     /// The bundle that it is written to.
     pub bundle: Option<PathBuf>,
     /// Whether its report and plots are being written.
@@ -131,9 +189,7 @@ impl Sweep {
             seconds_left: None,
             began: 0.0,
             ended: None,
-            bundle: None,
-            writing: false,
-            unsaved: None,
+            kept: Kept::default(),
         }
     }
 
@@ -150,7 +206,7 @@ impl Sweep {
     /// Whether a sweep is under way, paused ones included.
     #[must_use]
     pub fn is_running(&self) -> bool {
-        matches!(self.phase, Phase::Running | Phase::Paused | Phase::Stopping)
+        self.phase.is_running()
     }
 }
 
@@ -305,6 +361,10 @@ pub struct State {
     pub inspect: Inspect,
     /// The charts screen.
     pub charts: Charts,
+    /// The Pareto screen.
+    pub pareto: Pareto,
+    /// The stability screen.
+    pub stability: Stability,
     /// The reports screen.
     pub reports: Reports,
     /// First line of help that is shown.
@@ -344,6 +404,8 @@ impl State {
                 source: Source::Live,
                 marked: ChartLine::Quantity,
             },
+            pareto: Pareto::new(plan),
+            stability: Stability::new(plan),
             reports: Reports::default(),
             help_line: 0,
             notice: None,
@@ -365,6 +427,16 @@ impl State {
             (Screen::Preview, _) => Place::Preview,
             (Screen::Inspect, _) => Place::Inspect,
             (Screen::Charts, _) => Place::Charts,
+            (Screen::Pareto, _)
+                if self.pareto.opened.is_some() && self.picture.cursor.is_some() =>
+            {
+                Place::Aim
+            }
+            (Screen::Pareto, _) if self.pareto.opened.is_some() => Place::Configuration,
+            (Screen::Pareto, _) if self.pareto.panel == Panel::Plan => Place::OtherPlan,
+            (Screen::Pareto, _) => Place::Points,
+            (Screen::Stability, _) if self.stability.panel == Panel::Plan => Place::OtherPlan,
+            (Screen::Stability, _) => Place::Map,
             (Screen::Reports, _) => Place::Reports,
             (Screen::Help, _) => Place::Help,
         }
@@ -374,8 +446,81 @@ impl State {
     #[must_use]
     pub fn situation(&self) -> Situation {
         Situation {
-            running: self.sweep.is_running(),
-            measured: !self.sweep.runs.rows.is_empty(),
+            running: self.running().is_some(),
+            measured: match self.screen {
+                Screen::Pareto => !self.judged().is_empty(),
+                Screen::Stability => self.stability.has_cells(),
+                _ => !self.sweep.runs.rows.is_empty(),
+            },
+        }
+    }
+
+    /// What is measured now; `None` where nothing is.
+    #[must_use]
+    pub fn running(&self) -> Option<Experiment> {
+        if self.sweep.is_running() {
+            Some(Experiment::Sweep)
+        } else if self.pareto.progress.is_running() {
+            Some(Experiment::Accuracy)
+        } else if self.stability.progress.is_running() {
+            Some(Experiment::Stability)
+        } else {
+            None
+        }
+    }
+
+    /// Where what is measured now stands.
+    pub fn phase_mut(&mut self) -> Option<&mut Phase> {
+        Some(match self.running()? {
+            Experiment::Sweep => &mut self.sweep.phase,
+            Experiment::Accuracy => &mut self.pareto.progress.phase,
+            Experiment::Stability => &mut self.stability.progress.phase,
+        })
+    }
+
+    /// The plan of the screen that is shown.
+    #[must_use]
+    pub fn editor(&self) -> &PlanEditor {
+        match self.screen {
+            Screen::Pareto => &self.pareto.plan,
+            Screen::Stability => &self.stability.plan,
+            _ => &self.plan,
+        }
+    }
+
+    /// The plan of the screen that is shown.
+    pub fn editor_mut(&mut self) -> &mut PlanEditor {
+        match self.screen {
+            Screen::Pareto => &mut self.pareto.plan,
+            Screen::Stability => &mut self.stability.plan,
+            _ => &mut self.plan,
+        }
+    }
+
+    /// The judged runs that the Pareto screen shows, among others.
+    #[must_use]
+    pub fn judged(&self) -> &[Run] {
+        match (&self.pareto.source, &self.reports.opened) {
+            (Source::Opened, Some(opened)) => &opened.report.runs,
+            _ => &self.pareto.runs,
+        }
+    }
+
+    /// The plan by which these were judged.
+    #[must_use]
+    pub fn judged_by(&self) -> Option<&Plan> {
+        match (&self.pareto.source, &self.reports.opened) {
+            (Source::Opened, Some(opened)) => Some(&opened.report.config),
+            _ => self.pareto.ran.as_ref().map(|plan| &plan.plan),
+        }
+    }
+
+    /// What becomes of what an experiment measures; `None` where it keeps nothing.
+    pub fn kept_mut(&mut self, experiment: Experiment) -> Option<&mut Kept> {
+        match experiment {
+            Experiment::Sweep => Some(&mut self.sweep.kept),
+            Experiment::Accuracy => Some(&mut self.pareto.kept),
+            Experiment::Stability => None,
         }
     }
 

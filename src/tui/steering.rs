@@ -13,6 +13,8 @@ const GLANCE: Duration = Duration::from_millis(2);
 struct Holds {
     /// The sweep that is under way.
     control: Option<Arc<Control>>,
+    /// Whether it is timed, so that nothing else may work while it does.
+    timed: bool,
     user: bool,
     /// Pictures and reports in work that the sweep waits for.
     others: u32,
@@ -21,7 +23,7 @@ struct Holds {
 impl Holds {
     fn apply(&self) {
         if let Some(control) = &self.control {
-            control.pause(self.user || self.others > 0);
+            control.pause(self.user || self.timed && self.others > 0);
         }
     }
 }
@@ -38,9 +40,10 @@ impl Steering {
         self.holds.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A sweep begins.
-    pub(super) fn begin(&self, control: Arc<Control>) {
+    /// An experiment begins; one that is not `timed` waits for its user only.
+    pub(super) fn begin(&self, control: Arc<Control>, timed: bool) {
         let mut holds = self.lock();
+        holds.timed = timed;
         holds.user = false;
         holds.control = Some(control);
         holds.apply();
@@ -56,6 +59,12 @@ impl Steering {
         let mut holds = self.lock();
         holds.user = paused;
         holds.apply();
+    }
+
+    /// Whether something is being timed now, so that other work has to wait for a gap.
+    pub(super) fn is_timed(&self) -> bool {
+        let holds = self.lock();
+        holds.timed && holds.control.is_some()
     }
 
     /// Ends the sweep after the sample in progress.
@@ -89,7 +98,11 @@ impl Steering {
         }
         let hold = Hold { steering: self };
         loop {
-            let waits = self.lock().control.as_ref().is_none_or(|c| c.waiting());
+            let waits = {
+                let holds = self.lock();
+                let waiting = holds.control.as_ref().is_none_or(|c| c.waiting());
+                waiting || !holds.timed
+            };
             if waits {
                 return Some(hold);
             }
@@ -123,7 +136,7 @@ mod tests {
     fn a_picture_and_the_user_each_make_the_sweep_wait() {
         let steering = Steering::default();
         let control = Arc::new(Control::default());
-        steering.begin(Arc::clone(&control));
+        steering.begin(Arc::clone(&control), true);
         control.set_waiting(true);
         let hold = steering.hold(|| false);
         assert!(hold.is_some() && control.paused());
@@ -138,9 +151,20 @@ mod tests {
     fn a_picture_gives_up_and_lets_the_sweep_go_on() {
         let steering = Steering::default();
         let control = Arc::new(Control::default());
-        steering.begin(Arc::clone(&control));
+        steering.begin(Arc::clone(&control), true);
         assert!(steering.hold(|| true).is_none());
         assert!(!control.paused());
+    }
+
+    #[test]
+    fn what_is_not_timed_waits_for_its_user_only() {
+        let steering = Steering::default();
+        let control = Arc::new(Control::default());
+        steering.begin(Arc::clone(&control), false);
+        let hold = steering.hold(|| false);
+        assert!(hold.is_some() && !control.paused() && !steering.is_timed());
+        steering.pause(true);
+        assert!(control.paused());
     }
 
     #[test]

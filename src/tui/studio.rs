@@ -15,7 +15,7 @@ use super::steering::Steering;
 use super::update::Event;
 use crate::accel::{self, Accelerator};
 use crate::geometry::{Hit, Ray};
-use crate::lab::NRule;
+use crate::lab::{self, NRule, Place};
 use crate::preview::{Cells, ColorMode, pixel_size};
 use crate::scene::{self, Scene};
 use crate::shade::{PASSES, Pass, View};
@@ -79,6 +79,7 @@ impl Structure {
     fn serves(&self, wish: &Wish) -> bool {
         let same_n = self.n.is_none() || self.wish.n == wish.n;
         self.wish.scene == wish.scene
+            && self.wish.place == wish.place
             && self.wish.accel == wish.accel
             && self.wish.kernel == wish.kernel
             && same_n
@@ -91,7 +92,7 @@ struct Worker {
     memory_limit: u64,
     steering: Steering,
     to: Sender<Message>,
-    scenes: Vec<Arc<Scene>>,
+    scenes: Vec<(String, Place, Arc<Scene>)>,
     structure: Option<Structure>,
 }
 
@@ -131,7 +132,7 @@ impl Worker {
 
     fn serve(&mut self, request: &Request) -> Result<(), String> {
         let steering = self.steering.clone();
-        if steering.is_running() {
+        if steering.is_timed() {
             self.doing(request, "waits for a gap in the sweep");
         }
         let Some(_hold) = steering.hold(|| self.cancelled()) else {
@@ -201,15 +202,18 @@ impl Worker {
     }
 
     fn scene(&mut self, request: &Request) -> Result<Arc<Scene>, String> {
-        let name = &request.wish.scene;
-        if let Some(at) = self.scenes.iter().position(|scene| scene.name == *name) {
-            let scene = self.scenes.remove(at);
-            self.scenes.insert(0, Arc::clone(&scene));
-            return Ok(scene);
+        let (name, place) = (&request.wish.scene, request.wish.place);
+        let kept = |(of, at, _): &(String, Place, Arc<Scene>)| of == name && *at == place;
+        if let Some(at) = self.scenes.iter().position(kept) {
+            self.scenes[..=at].rotate_right(1);
+            return Ok(Arc::clone(&self.scenes[0].2));
         }
         self.doing(request, format!("loading {name}"));
-        let scene = Arc::new(scene::load(name).map_err(|error| error.to_string())?);
-        self.scenes.insert(0, Arc::clone(&scene));
+        let scene = scene::load(name).map_err(|error| error.to_string())?;
+        let placed = lab::placed(&scene, place).map_err(|error| error.to_string())?;
+        let scene = Arc::new(placed);
+        self.scenes
+            .insert(0, (name.clone(), place, Arc::clone(&scene)));
         self.scenes.truncate(KEPT_SCENES);
         Ok(scene)
     }

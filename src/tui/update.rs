@@ -10,8 +10,11 @@ use super::keymap::{self, Key, Place};
 use super::layout;
 use super::overlay::Overlay;
 use super::picture::{PictureNews, Request};
-use super::state::{BundleRow, Opened, Phase, Screen, State};
-use crate::lab::{self, Plan};
+use super::runner::{Keeping, Work};
+use super::stability::{Reproduced, Wanted};
+use super::state::{BundleRow, Experiment, Opened, Phase, Screen, State};
+use crate::lab::stability::{StabilityEvent, StabilityPlan};
+use crate::lab::{self, AccuracyEvent};
 use crate::report::Report;
 
 /// What can happen.
@@ -27,20 +30,20 @@ pub enum Event {
     Clock(f64),
     /// The running sweep tells something.
     Lab(lab::Event),
-    /// The bundle of the running sweep was made there.
-    BundleMade(PathBuf),
-    /// The bundle is complete, with report and plots.
-    BundleWritten(PathBuf),
-    /// What is measured cannot be written; why.
-    BundleFailed(String),
-    /// The sweep could not begin, or broke off; why.
-    SweepFailed(String),
-    /// The sweep has ended; its report is being written.
-    Writing,
+    /// Methods that are being judged: something is told.
+    Judged(AccuracyEvent),
+    /// What becomes of what an experiment measures.
+    Kept(Experiment, Keeping),
     /// The picture thread tells something.
     Picture(PictureNews),
     /// The examiner tells something.
     Inspect(InspectNews),
+    /// The running stability suite tells something.
+    Trial(StabilityEvent),
+    /// It has ended, stopped or complete; or why it broke off.
+    TrialsEnded(Result<bool, String>),
+    /// A failure was made again, or could not be.
+    Reproduced(Reproduced),
     /// The bundles in the results directory, or why there is no list.
     Listed(Result<Vec<BundleRow>, String>),
     /// A report was read, with the name of its bundle; or why not.
@@ -50,18 +53,22 @@ pub enum Event {
 /// What is to be done outside the state.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Effect {
-    /// Perform a sweep.
-    Start(Box<Plan>),
+    /// Measure something.
+    Start(Box<Work>),
     /// Let the sweep wait, or go on.
     Pause(bool),
     /// End the sweep.
     Stop,
-    /// Write report and plots of what is measured so far.
-    Write,
+    /// Write report and plots of what an experiment has measured so far.
+    Write(Experiment),
     /// Show a picture.
     Render(Box<Request>),
     /// Follow a ray.
     Inspect(Box<inspect::Request>),
+    /// Run the stability suite.
+    TryAll(Box<StabilityPlan>),
+    /// Make a failure again.
+    Reproduce(Box<Wanted>),
     /// List the bundles.
     List,
     /// Read the report of a bundle.
@@ -96,44 +103,29 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
             lab_told(state, event);
             Vec::new()
         }
-        Event::BundleMade(path) => {
-            state.sweep.bundle = Some(path);
+        Event::Judged(event) => {
+            state.pareto.take(event, state.frozen, state.clock);
             Vec::new()
         }
-        Event::BundleWritten(path) => {
-            state.sweep.writing = false;
-            state.sweep.unsaved = None;
-            state.say(format!("Report and plots are in {}.", path.display()));
-            state.sweep.bundle = Some(path);
-            vec![Effect::List]
-        }
-        Event::BundleFailed(why) => {
-            state.sweep.writing = false;
-            state.sweep.unsaved = Some(why.clone());
-            state.warn(why);
-            Vec::new()
-        }
-        Event::SweepFailed(why) => {
-            state.sweep.writing = false;
-            state.sweep.phase = if state.sweep.runs.rows.is_empty() {
-                Phase::Idle
-            } else {
-                Phase::Stopped
-            };
-            state.sweep.ended = Some(state.clock);
-            state.warn(why);
-            Vec::new()
-        }
-        Event::Writing => {
-            state.sweep.writing = state.sweep.bundle.is_some() && state.sweep.unsaved.is_none();
-            Vec::new()
-        }
+        Event::Kept(of, keeping) => kept(state, of, keeping),
         Event::Picture(news) => {
             state.picture.take(news);
             Vec::new()
         }
         Event::Inspect(news) => {
             state.inspect.take(news);
+            Vec::new()
+        }
+        Event::Trial(event) => {
+            state.stability.take(event, state.frozen);
+            Vec::new()
+        }
+        Event::TrialsEnded(ended) => {
+            trials_ended(state, ended);
+            Vec::new()
+        }
+        Event::Reproduced(news) => {
+            actions::reproduced(state, news);
             Vec::new()
         }
         Event::Listed(result) => {
@@ -150,6 +142,7 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
                     state.reports.opened = Some(Opened::new(name, *report));
                     state.charts.source = super::state::Source::Opened;
                     state.charts.panel = 0;
+                    state.pareto.look_at(state.reports.opened.as_ref());
                 }
                 Err(why) => state.warn(why),
             }
@@ -221,6 +214,56 @@ fn lab_told(state: &mut State, event: lab::Event) {
     }
 }
 
+/// What becomes of what an experiment measures.
+fn kept(state: &mut State, of: Experiment, keeping: Keeping) -> Vec<Effect> {
+    let clock = state.clock;
+    let Some(kept) = state.kept_mut(of) else {
+        return Vec::new();
+    };
+    match keeping {
+        Keeping::Made(dir) => kept.bundle = Some(dir),
+        Keeping::Writing => kept.writing = kept.bundle.is_some() && kept.unsaved.is_none(),
+        Keeping::Written(dir) => {
+            (kept.writing, kept.unsaved) = (false, None);
+            let said = format!("Report and plots are in {}.", dir.display());
+            kept.bundle = Some(dir);
+            state.say(said);
+            return vec![Effect::List];
+        }
+        Keeping::Failed(why) => {
+            (kept.writing, kept.unsaved) = (false, Some(why.clone()));
+            state.warn(why);
+        }
+        Keeping::Broken(why) => {
+            kept.writing = false;
+            if of == Experiment::Accuracy {
+                state.pareto.progress.end(true, clock);
+            } else {
+                state.sweep.phase = if state.sweep.runs.rows.is_empty() {
+                    Phase::Idle
+                } else {
+                    Phase::Stopped
+                };
+                state.sweep.ended = Some(clock);
+            }
+            state.warn(why);
+        }
+    }
+    Vec::new()
+}
+
+fn trials_ended(state: &mut State, ended: Result<bool, String>) {
+    let clock = state.clock;
+    match ended {
+        Ok(stopped) => state.stability.progress.end(stopped, clock),
+        Err(why) => {
+            state.stability.progress.end(true, clock);
+            state.stability.error = Some(why.clone());
+            state.warn(why);
+        }
+    }
+}
+
 fn listed(state: &mut State, result: Result<Vec<BundleRow>, String>) {
     match result {
         Ok(bundles) => {
@@ -235,13 +278,19 @@ fn listed(state: &mut State, result: Result<Vec<BundleRow>, String>) {
 
 /// Asks whether to quit, where something would be lost; otherwise quits.
 pub(super) fn quit(state: &mut State) -> Vec<Effect> {
-    let reason = if state.sweep.is_running() {
-        Some("A sweep is running. Its finished runs are kept; the rest is not measured.".to_owned())
+    let reason = if let Some(experiment) = state.running() {
+        let name = experiment.name();
+        let kept = match experiment {
+            Experiment::Sweep => "Its finished runs are kept; the rest is not measured.",
+            Experiment::Accuracy => "What is judged so far is kept.",
+            Experiment::Stability => "Its map is lost.",
+        };
+        Some(format!("{name} is running. {kept}"))
     } else {
-        state
-            .sweep
-            .unsaved
-            .as_ref()
+        let kept = [&state.sweep.kept, &state.pareto.kept];
+        let mut unsaved = kept.into_iter().filter_map(|kept| kept.unsaved.as_ref());
+        unsaved
+            .next()
             .map(|why| format!("Not everything measured is saved: {why}"))
     };
     let asked = matches!(state.overlays.last(), Some(Overlay::Quit(_)));

@@ -107,7 +107,7 @@ fn status(state: &State) -> (String, Role) {
         Phase::Running => (format!("running {percent}"), Role::Good),
         Phase::Paused => (format!("PAUSED {percent}"), Role::Warning),
         Phase::Stopping => ("stopping".to_owned(), Role::Warning),
-        _ if state.sweep.writing => ("writing".to_owned(), Role::Good),
+        _ if state.sweep.kept.writing => ("writing".to_owned(), Role::Good),
         Phase::Complete => ("complete".to_owned(), Role::Good),
         Phase::Stopped => (format!("stopped {percent}"), Role::Warning),
     }

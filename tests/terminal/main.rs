@@ -94,7 +94,7 @@ fn a_plan_is_edited_run_watched_written_and_left() {
     for file in ["runs.jsonl", "report.html"] {
         assert!(bundle.join(file).exists(), "{file} is missing");
     }
-    terminal.press("5");
+    terminal.press("7");
     terminal.wait_for("teapot");
     terminal.press("\r");
     terminal.wait_for("Mrays/s");
@@ -112,8 +112,10 @@ fn every_screen_opens_and_survives_every_size() {
         ("2", "accelerator"),
         ("3", "grid n=auto"),
         ("4", "Charts"),
-        ("5", "Reports"),
-        ("6", "Everywhere"),
+        ("5", "offsets"),
+        ("6", "cases"),
+        ("7", "Reports"),
+        ("8", "Everywhere"),
         ("1", "grid n"),
     ] {
         terminal.press(key);
@@ -158,6 +160,68 @@ fn a_ray_is_chosen_in_the_picture_and_walked_in_two_accelerators() {
     terminal.press(ESC);
     terminal.press(ESC);
     terminal.wait_for("Enter inspect the ray");
+    terminal.press("q");
+    assert_eq!(terminal.wait_for_end(), 0);
+    terminal.assert_restored();
+}
+
+#[test]
+fn methods_are_judged_charted_and_opened_and_a_wrong_ray_is_inspected() {
+    let dir = folder();
+    let mut terminal = lab(dir.path(), 120, 40);
+    terminal.press("5");
+    terminal.wait_for("to be judged");
+    edit(&mut terminal, 1, "rays", "edge");
+    edit(&mut terminal, 2, "offsets", "1e4");
+    edit(&mut terminal, 4, "kernels", "sheet-signed, woop");
+    edit(&mut terminal, 7, "rays a set", "600");
+    terminal.press("\r");
+    terminal.wait_until("both methods", |s| {
+        s.contains("2 judged") && s.contains("complete in")
+    });
+    let screen = terminal.wait_for("report: results");
+    for words in ["sheet-signed", "woop", "3/N =", "moved by 1e4", "Mrays/s"] {
+        assert!(screen.contains(words), "'{words}' is missing:\n{screen}");
+    }
+    let report = report(&bundle(dir.path()));
+    let runs = report["runs"].as_array().expect("runs");
+    assert!(runs.iter().all(|run| run["accuracy"]["rays"] == 600));
+    // The one that decides most rays wrongly.
+    terminal.press("s");
+    terminal.press("G");
+    terminal.press("\r");
+    terminal.wait_until("its picture", |s| s.contains('▄') || s.contains('▀'));
+    terminal.press("i");
+    terminal.wait_for("WRONG");
+    terminal.press(ESC);
+    terminal.wait_for("i inspect a wrong ray");
+    terminal.press("q");
+    assert_eq!(terminal.wait_for_end(), 0);
+    terminal.assert_restored();
+}
+
+#[test]
+fn the_stability_map_fills_and_a_failing_cell_opens_in_the_inspector() {
+    let dir = folder();
+    let mut terminal = lab(dir.path(), 120, 40);
+    terminal.press("6");
+    terminal.wait_for("to be tried");
+    edit(&mut terminal, 0, "cases", "ordinary, closed-edges");
+    edit(&mut terminal, 1, "kernels", "woop, moller-trumbore");
+    edit(&mut terminal, 2, "accelerators", "grid");
+    terminal.press("\r");
+    terminal.wait_for("complete in");
+    terminal.press("n");
+    terminal.wait_for("fails as known: moller-trumbore on closed-edges");
+    terminal.press("o");
+    terminal.wait_for("Wrote ");
+    assert!(dir.path().join("results/failures").exists());
+    terminal.press("\r");
+    let screen = terminal.wait_for("triangles are enough");
+    assert!(screen.contains("closed-edges"), "{screen}");
+    terminal.wait_for("WRONG");
+    terminal.press(ESC);
+    terminal.wait_for("map: kernels alone");
     terminal.press("q");
     assert_eq!(terminal.wait_for_end(), 0);
     terminal.assert_restored();

@@ -121,7 +121,7 @@ impl Experiment<'_> {
             place,
         };
         for on_rays in runs.chunk_by(|a, b| a.config.rays == b.config.rays) {
-            if self.control.stopped() {
+            if !self.control.may_go_on() {
                 return;
             }
             match self.course(&stage, &on_rays[0].config) {
@@ -172,7 +172,7 @@ impl Experiment<'_> {
                 }
             };
             for run in same {
-                if self.control.stopped() {
+                if !self.control.may_go_on() {
                     return;
                 }
                 match self.prepare(course, run, &shared) {
@@ -254,7 +254,7 @@ impl Experiment<'_> {
                 live.swap(i, pick as usize);
             }
             for (run, _) in &mut live {
-                if self.control.stopped() {
+                if !self.control.may_go_on() {
                     return;
                 }
                 self.control.set_sampling(true);
@@ -273,17 +273,20 @@ impl Experiment<'_> {
             for (run, found) in live {
                 match stop_reason(&run.speeds, run.seconds, budget, self.plan.seed) {
                     None => going.push((run, found)),
-                    Some(why) => self.finish(run, found, why),
+                    Some(why) => self.finish(run, &found, why),
                 }
             }
             live = going;
         }
     }
 
-    fn finish(&mut self, live: Live, accuracy: Accuracy, why: StopReason) {
+    fn finish(&mut self, live: Live, accuracy: &Accuracy, why: StopReason) {
         self.complete += 1;
         let run = live.finish(why);
-        let record = Box::new(AccuracyRecord { run, accuracy });
+        let record = Box::new(AccuracyRecord {
+            run,
+            accuracy: *accuracy,
+        });
         (self.sink)(AccuracyEvent::Finished { record });
     }
 

@@ -79,7 +79,9 @@ impl Truths {
             self.tally(&mut tally, truths, rays, &hits, &blocked);
             tally
         });
-        tally.reduce(Tally::default, Tally::joined).accuracy(place)
+        tally
+            .reduce(Tally::default, |one, other| one.joined(&other))
+            .accuracy(place)
     }
 
     /// How many of the answers to all rays are wrong decisions: leaks, phantoms and wrong surfaces.
@@ -205,7 +207,7 @@ struct Tally {
 }
 
 impl Tally {
-    fn joined(mut self, other: Self) -> Self {
+    fn joined(mut self, other: &Self) -> Self {
         self.rays += other.rays;
         self.leaks += other.leaks;
         self.phantoms += other.phantoms;

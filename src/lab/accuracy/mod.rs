@@ -24,6 +24,7 @@
 //! kernel, except that a phantom outside its triangle's cell may be met by one structure and not by another.
 
 mod experiment;
+mod first_wrong;
 pub(in crate::lab) mod judge;
 mod place;
 mod probe;
@@ -34,7 +35,8 @@ mod truth;
 pub(super) use judge::Truths;
 
 pub use experiment::{accuracy, accuracy_from};
-pub use place::Place;
+pub use first_wrong::first_wrong;
+pub use place::{Place, rays as placed_rays, scene as placed};
 pub use record::{Accuracy, AccuracyBounds, ErrorSpread, Rate, SelfHits};
 pub use starts::StartRule;
 

@@ -51,7 +51,7 @@ impl fmt::Display for Place {
 ///
 /// # Errors
 /// A coordinate leaves the range of `f32`.
-pub(super) fn scene(scene: &Scene, place: Place) -> Result<Scene, MeshError> {
+pub fn scene(scene: &Scene, place: Place) -> Result<Scene, MeshError> {
     let mut moved = scene.clone();
     if place == Place::ITS_OWN {
         return Ok(moved);
@@ -75,7 +75,7 @@ pub(super) fn scene(scene: &Scene, place: Place) -> Result<Scene, MeshError> {
 ///
 /// # Errors
 /// Those of [`trace::ray_set`].
-pub(super) fn rays(
+pub fn rays(
     moved: &Scene,
     place: Place,
     spec: &str,

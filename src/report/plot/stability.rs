@@ -75,7 +75,7 @@ pub(super) fn svg(map: &Map, style: Style) -> Result<String, String> {
             left: first,
         },
         Half {
-            title: "Accelerators, by brute force with the same kernel",
+            title: "Accelerators, by brute force",
             methods: &map.accels,
             cell: Map::accel_cell,
             left: second,

@@ -101,7 +101,7 @@ fn through(state: &State, cell: (u16, u16), cells: (u16, u16)) -> (Subject, Side
         pixel(cell.1, cells.1, height),
     );
     let subject = Subject {
-        source: Source::Spec(wish.scene.clone()),
+        source: Source::Spec(wish.scene.clone(), wish.place),
         aim: Aim::Point {
             orbit: wish.orbit,
             at: (x as f32 + 0.5, y as f32 + 0.5),

@@ -67,11 +67,11 @@ fn pick(state: &mut State, action: Action) {
 
 /// Sets a line of the plan; the picture follows to a scene that the plan has.
 fn set_line(state: &mut State, field: Field, line: &str) {
-    state.plan.set(field, line);
-    let scenes = state.plan.items(Field::Scenes);
+    state.editor_mut().set(field, line);
+    let scenes = state.editor().items(Field::Scenes);
     let shown = scenes.contains(&state.picture.wish.scene);
     if field == Field::Scenes
-        && state.plan.error(field).is_none()
+        && state.editor().error(field).is_none()
         && !shown
         && let Some(first) = scenes.first()
     {
@@ -118,7 +118,7 @@ fn live(state: &mut State) {
     };
     let (purpose, text) = (field.purpose, field.input.text().to_owned());
     if let Purpose::Line(line) = purpose {
-        let mut trial = state.plan.clone();
+        let mut trial = state.editor().clone();
         trial.set(line, &text);
         let error = trial.error(line).map(str::to_owned);
         if let Some(Overlay::Text(field)) = state.overlays.last_mut() {

@@ -40,13 +40,16 @@ pub(super) fn apply(state: &mut State, place: Place, action: Action) -> Vec<Effe
         Action::PreviousAccel => wish.step_accel(-1),
         Action::NextKernel => wish.step_kernel(),
         Action::Finer | Action::Coarser => step_n(state, action),
-        Action::Aim => {
-            state.picture.cursor = Some(state.picture.cursor.unwrap_or_else(|| middle(state)));
-        }
+        Action::Aim => aim(state),
         Action::Back => state.screen = Screen::Sweep,
         _ => {}
     }
     Vec::new()
+}
+
+/// Puts the cursor into the picture.
+pub(super) fn aim(state: &mut State) {
+    state.picture.cursor = Some(state.picture.cursor.unwrap_or_else(|| middle(state)));
 }
 
 /// The cell in the middle of the picture.

@@ -73,6 +73,7 @@ fn opened(state: &mut State, action: Action) -> Vec<Effect> {
             state.reports.opened = None;
             state.charts.source = Source::Live;
             state.charts.panel = 0;
+            state.pareto.look_at(None);
         }
         _ => {
             if let Some(lines) = lines(action) {

@@ -69,6 +69,16 @@ pub enum Action {
     Aim,
     /// Another plane for the slice.
     Plane,
+    /// Inspect a ray that goes wrong.
+    Inspect,
+    /// The other view of the same.
+    Turn,
+    /// The next cell that is not ok.
+    NextFault,
+    /// The previous cell that is not ok.
+    PreviousFault,
+    /// Write what is marked to files.
+    Export,
     /// Closer to the marked step.
     ZoomIn,
     /// More of the way.

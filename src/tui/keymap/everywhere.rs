@@ -12,6 +12,21 @@ const WORKPLACES: &[Place] = &[
     P::Preview,
     P::Inspect,
     P::Charts,
+    P::OtherPlan,
+    P::Points,
+    P::Map,
+    P::Reports,
+];
+const PANELS: &[Place] = &[
+    P::Plan,
+    P::Runs,
+    P::Preview,
+    P::Inspect,
+    P::Charts,
+    P::OtherPlan,
+    P::Points,
+    P::Configuration,
+    P::Map,
     P::Reports,
 ];
 const SCREENS: &[Place] = &[
@@ -21,6 +36,10 @@ const SCREENS: &[Place] = &[
     P::Aim,
     P::Inspect,
     P::Charts,
+    P::OtherPlan,
+    P::Points,
+    P::Configuration,
+    P::Map,
     P::Reports,
     P::Help,
 ];
@@ -29,6 +48,9 @@ const LISTS: &[Place] = &[
     P::Runs,
     P::Inspect,
     P::Charts,
+    P::OtherPlan,
+    P::Points,
+    P::Map,
     P::Reports,
     P::Help,
     P::Pick,
@@ -52,7 +74,7 @@ pub const TABLE: &[Binding] = &[
     row(
         &[Key::char('e')],
         A::Expand,
-        WORKPLACES,
+        PANELS,
         "give the focused panel the whole screen, or take it back",
     )
     .hint("e", "expand"),
@@ -80,8 +102,10 @@ pub const TABLE: &[Binding] = &[
     row(&[Key::char('2')], A::Screen(2), SCREENS, "Preview"),
     row(&[Key::char('3')], A::Screen(3), SCREENS, "Inspect"),
     row(&[Key::char('4')], A::Screen(4), SCREENS, "Charts"),
-    row(&[Key::char('5')], A::Screen(5), SCREENS, "Reports"),
-    row(&[Key::char('6')], A::Screen(6), SCREENS, "Help"),
+    row(&[Key::char('5')], A::Screen(5), SCREENS, "Pareto"),
+    row(&[Key::char('6')], A::Screen(6), SCREENS, "Stability"),
+    row(&[Key::char('7')], A::Screen(7), SCREENS, "Reports"),
+    row(&[Key::char('8')], A::Screen(8), SCREENS, "Help"),
     row(&[Key::char('?')], A::Help, SCREENS, "all keys").hint("?", "help"),
     row(
         &[Key::char('q')],

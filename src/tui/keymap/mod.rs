@@ -10,8 +10,10 @@ mod charts;
 mod everywhere;
 mod inspect;
 mod overlays;
+mod pareto;
 mod preview;
 mod reports;
+mod stability;
 mod sweep;
 
 pub use super::keys::{Key, Place};
@@ -133,6 +135,8 @@ pub const TABLES: &[&[Binding]] = &[
     inspect::TABLE,
     preview::TABLE,
     charts::TABLE,
+    pareto::TABLE,
+    stability::TABLE,
     reports::TABLE,
     everywhere::TABLE,
 ];

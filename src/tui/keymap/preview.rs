@@ -60,7 +60,7 @@ pub const TABLE: &[Binding] = &[
     row(
         &[Key::char('c')],
         A::Channel,
-        &[P::Plan, P::Runs, P::Preview],
+        &[P::Plan, P::Runs, P::Preview, P::Configuration],
         "next channel: colour, triangles, depth, normals, cells visited, triangles tested",
     )
     .hint("c", "channel"),
@@ -113,7 +113,7 @@ pub const TABLE: &[Binding] = &[
     row(
         &[Key::char('b')],
         A::Symbols,
-        &[P::Plan, P::Runs, P::Preview],
+        &[P::Plan, P::Runs, P::Preview, P::Configuration],
         "next kind of symbols in the picture",
     ),
     row(ESC, A::Back, &[P::Preview], "back"),

@@ -6,7 +6,7 @@ use super::{Binding, ENTER, ESC, Key, LEFT, RIGHT, SPACE, When, pause, row, stop
 
 /// The plan and the runs.
 pub const TABLE: &[Binding] = &[
-    row(ENTER, A::Run, &[P::Plan], "run the plan")
+    row(ENTER, A::Run, &[P::Plan, P::OtherPlan], "run the plan")
         .hint("Enter", "run")
         .when(When::Idle),
     row(
@@ -19,23 +19,23 @@ pub const TABLE: &[Binding] = &[
     row(
         SPACE,
         A::Edit,
-        &[P::Plan],
+        &[P::Plan, P::OtherPlan],
         "change the marked line: choose from a list, or type",
     )
     .hint("Space", "change"),
-    row(ESC, A::Back, &[P::Plan], "to the runs")
-        .hint("Esc", "runs")
+    row(ESC, A::Back, &[P::Plan, P::OtherPlan], "to the results")
+        .hint("Esc", "results")
         .when(When::Measured),
     row(ESC, A::Back, &[P::Runs], "to the plan").hint("Esc", "plan"),
     row(
         &[Key::char('t')],
         A::Type,
-        &[P::Plan],
+        &[P::Plan, P::OtherPlan],
         "type the line, e.g. a file, soup:5000 or grid:overlap=sat",
     )
     .hint("t", "type"),
-    pause(&[P::Plan, P::Runs]),
-    stop(&[P::Plan, P::Runs]),
+    pause(&[P::Plan, P::OtherPlan, P::Runs]),
+    stop(&[P::Plan, P::OtherPlan, P::Runs]),
     row(
         &[Key::char('+'), Key::char('=')],
         A::MoreSamples,

@@ -17,6 +17,7 @@ use ratatui::symbols::Marker;
 use ratatui::widgets::Widget;
 use ratatui::widgets::canvas::{Canvas, Line, Points};
 
+use super::axis::Axis;
 use crate::report::series::{Quantity, Series};
 use crate::tui::figures::figure;
 use crate::tui::theme::{Role, Theme};
@@ -30,35 +31,6 @@ pub struct Chart<'a> {
     pub lines: &'a [Series],
     /// Colours.
     pub theme: Theme,
-}
-
-/// An axis: logarithms of its ends, to whatever base.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Axis {
-    lo: f64,
-    hi: f64,
-}
-
-impl Axis {
-    /// The column, of `columns`, in which a logarithm lies: that of its braille dot, two a column.
-    fn column(self, x: f64, columns: u16) -> u16 {
-        self.dot(x, columns * 2) / 2
-    }
-
-    /// The row from above, of `rows`, in which a logarithm lies: that of its braille dot, four a row.
-    fn row(self, y: f64, rows: u16) -> u16 {
-        self.dot(self.hi - (y - self.lo), rows * 4) / 4
-    }
-
-    fn dot(self, x: f64, dots: u16) -> u16 {
-        let last = f64::from(dots.saturating_sub(1));
-        let share = (x - self.lo) / (self.hi - self.lo);
-        (share * last).round().clamp(0.0, last) as u16
-    }
-
-    fn ends(self) -> [f64; 2] {
-        [self.lo, self.hi]
-    }
 }
 
 impl Chart<'_> {
@@ -95,7 +67,7 @@ impl Chart<'_> {
                 .filter(|s| !s.constant)
                 .flat_map(|s| s.points.iter().map(|p| p.n)),
         );
-        let y_ticks = y_ticks(y_axis, area.height - 3);
+        let y_ticks = y_axis.ticks(area.height - 3);
         let gutter = y_ticks
             .iter()
             .map(|(_, t)| t.chars().count())
@@ -294,55 +266,6 @@ fn y_axis(values: impl Iterator<Item = f64>) -> Option<Axis> {
     })
 }
 
-/// Ticks at 1, 2 and 5 times powers of ten, or at powers alone where these would be too many for the rows.
-fn y_ticks(axis: Axis, rows: u16) -> Vec<(f64, String)> {
-    let most = (rows / 2).max(2) as usize;
-    let decades = || axis.lo.floor() as i32..=axis.hi.ceil() as i32;
-    let within = |values: Vec<f64>| -> Vec<(f64, String)> {
-        values
-            .into_iter()
-            .map(|v| (v.log10(), short(v)))
-            .filter(|(log, _)| (axis.lo..=axis.hi).contains(log))
-            .collect()
-    };
-    let fine = within(
-        decades()
-            .flat_map(|d| [1.0, 2.0, 5.0].map(|m| m * 10f64.powi(d)))
-            .collect(),
-    );
-    if fine.len() <= most {
-        return fine;
-    }
-    let mut step = 1;
-    loop {
-        let coarse = within(
-            decades()
-                .filter(|d| d.rem_euclid(step) == 0)
-                .map(|d| 10f64.powi(d))
-                .collect(),
-        );
-        if coarse.len() <= most || step > 64 {
-            return coarse;
-        }
-        step *= 2;
-    }
-}
-
-/// A tick's value without digits that say nothing: `0.05`, `2`, `500`, `10k`.
-fn short(value: f64) -> String {
-    match value {
-        v if v >= 0.999e9 => format!("{}G", (v / 1e9).round()),
-        v if v >= 0.999e6 => format!("{}M", (v / 1e6).round()),
-        v if v >= 0.999e4 => format!("{}k", (v / 1e3).round()),
-        v if v >= 0.999 => format!("{}", v.round()),
-        v if v >= 0.000_999 => {
-            let digits = (-v.log10()).ceil().max(1.0) as usize;
-            format!("{v:.digits$}")
-        }
-        v => format!("{v:.0e}"),
-    }
-}
-
 /// Rows as near as possible to the wanted ones (in rising order), no two equal, all below `height` where they fit.
 fn apart(wanted: &[u16], height: u16) -> Vec<u16> {
     let mut rows: Vec<u16> = Vec::new();
@@ -361,21 +284,6 @@ fn apart(wanted: &[u16], height: u16) -> Vec<u16> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn ticks_are_round_and_few_enough() {
-        let names = |lo: f64, hi: f64, rows| -> Vec<String> {
-            let axis = Axis {
-                lo: lo.log10(),
-                hi: hi.log10(),
-            };
-            y_ticks(axis, rows).into_iter().map(|t| t.1).collect()
-        };
-        assert_eq!(names(0.9, 60.0, 20), ["1", "2", "5", "10", "20", "50"]);
-        assert_eq!(names(0.04, 300.0, 10), ["0.1", "1", "10", "100"]);
-        assert_eq!(names(0.015, 0.06, 10), ["0.02", "0.05"]);
-        assert!(names(1e-300, 1e300, 10).len() <= 10);
-    }
 
     #[test]
     fn names_that_would_collide_are_moved_apart_and_stay_inside() {

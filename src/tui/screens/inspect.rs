@@ -44,7 +44,7 @@ fn head(state: &State, subject: &Subject, frame: &mut Frame, area: Rect) {
     let width = area.width as usize;
     let first = format!(
         " {} · {} · {}",
-        subject.source.name(),
+        subject.source.title(),
         kernel_label(&subject.kernel),
         subject.origin
     );

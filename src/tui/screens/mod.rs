@@ -5,15 +5,20 @@ use ratatui::layout::Rect;
 
 use super::state::{Screen, State};
 
+mod axis;
 pub mod chart;
 pub mod charts;
+pub mod configuration;
 pub mod details;
 pub mod help;
 pub mod inspect;
 pub mod overlays;
+pub mod pareto;
+mod pareto_chart;
 pub mod preview;
 pub mod reports;
 pub mod slice;
+pub mod stability;
 pub mod steps;
 mod strokes;
 pub mod sweep;
@@ -26,6 +31,8 @@ pub fn body(state: &State, frame: &mut Frame, area: Rect) {
         Screen::Preview => preview::draw(state, frame, area),
         Screen::Inspect => inspect::draw(state, frame, area),
         Screen::Charts => charts::draw(state, frame, area),
+        Screen::Pareto => pareto::draw(state, frame, area),
+        Screen::Stability => stability::draw(state, frame, area),
         Screen::Reports => reports::draw(state, frame, area),
         Screen::Help => help::draw(state, frame, area),
     }

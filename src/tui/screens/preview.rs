@@ -5,7 +5,7 @@ use ratatui::layout::Rect;
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
 
-use crate::lab::NRule;
+use crate::lab::{NRule, Place};
 use crate::preview::{Picture, legend_bar};
 use crate::tui::figures::{counted, figure, mebibytes};
 use crate::tui::layout;
@@ -29,7 +29,7 @@ pub fn picture(state: &State, frame: &mut Frame, area: Rect, focused: bool) {
     let picture = &state.picture;
     let wish = &picture.wish;
     let title = clipped(
-        &format!("{} · {}", wish.scene, wish.channel.name),
+        &format!("{} · {}", scene_title(wish), wish.channel.name),
         (area.width as usize).saturating_sub(6),
     );
     let mut block = panel(state.theme, title, focused);
@@ -52,6 +52,15 @@ pub fn picture(state: &State, frame: &mut Frame, area: Rect, focused: bool) {
     frame.render_widget(Picture::new(&shown.cells), inner);
     if let (Some(cell), true) = (picture.cursor, focused) {
         cursor(state, cell, frame, inner);
+    }
+}
+
+/// The scene, and where it is put if that is not its own place.
+fn scene_title(wish: &Wish) -> String {
+    if wish.place == Place::ITS_OWN {
+        wish.scene.clone()
+    } else {
+        format!("{} {}", wish.scene, wish.place)
     }
 }
 

@@ -19,7 +19,12 @@ use crate::tui::view::{clipped, panel, wrapped};
 pub fn draw(state: &State, frame: &mut Frame, area: Rect) {
     let parts = layout::sweep(state, area);
     if !parts.plan.is_empty() {
-        plan(state, frame, parts.plan);
+        let focused = state.panel == Panel::Plan;
+        let title = match (focused, state.sweep.is_running()) {
+            (true, false) => "plan: Enter runs it, Space changes a line",
+            _ => "plan",
+        };
+        plan(state.theme, &state.plan, title, focused, frame, parts.plan);
     }
     if !parts.picture.is_empty() {
         preview::picture(state, frame, parts.picture, false);
@@ -36,31 +41,35 @@ pub fn draw(state: &State, frame: &mut Frame, area: Rect) {
 /// Columns of a line's name.
 const LABEL: usize = 14;
 
-fn plan(state: &State, frame: &mut Frame, area: Rect) {
-    let focused = state.panel == Panel::Plan;
-    let title = match (focused, state.sweep.is_running()) {
-        (true, false) => "plan: Enter runs it, Space changes a line",
-        _ => "plan",
-    };
-    let block = panel(state.theme, title, focused);
+/// The lines of a plan.
+pub(super) fn plan(
+    theme: Theme,
+    editor: &PlanEditor,
+    title: &str,
+    focused: bool,
+    frame: &mut Frame,
+    area: Rect,
+) {
+    let block = panel(theme, title, focused);
     let inner = block.inner(area);
     frame.render_widget(block, area);
     let mut y = 0;
-    for field in Field::ALL {
+    for &field in editor.lines() {
         if y >= inner.height {
             break;
         }
         let row = Rect::new(inner.x, inner.y + y, inner.width, 1);
-        frame.render_widget(plan_line(state, field, focused, inner.width as usize), row);
+        let line = plan_line(theme, editor, field, focused, inner.width as usize);
+        frame.render_widget(line, row);
         y += 1;
     }
     // With more room the marked line says how it is written, and what is wrong with it in full.
     let Some(rest) = inner.height.checked_sub(y + 1).filter(|rest| *rest > 0) else {
         return;
     };
-    let (text, role) = match state.plan.error(state.plan.marked) {
+    let (text, role) = match editor.error(editor.marked) {
         Some(why) => (why.to_owned(), Role::Bad),
-        None => (state.plan.marked.form().to_owned(), Role::Quiet),
+        None => (editor.marked.form().to_owned(), Role::Quiet),
     };
     for (i, line) in wrapped(&text, inner.width as usize - 2)
         .into_iter()
@@ -68,22 +77,27 @@ fn plan(state: &State, frame: &mut Frame, area: Rect) {
         .enumerate()
     {
         let row = Rect::new(inner.x + 1, inner.y + y + 1 + i as u16, inner.width - 1, 1);
-        frame.render_widget(Line::styled(line, state.theme.style(role)), row);
+        frame.render_widget(Line::styled(line, theme.style(role)), row);
     }
 }
 
-fn plan_line(state: &State, field: Field, focused: bool, width: usize) -> Line<'static> {
-    let theme = state.theme;
-    let marked = focused && state.plan.marked == field;
+fn plan_line(
+    theme: Theme,
+    editor: &PlanEditor,
+    field: Field,
+    focused: bool,
+    width: usize,
+) -> Line<'static> {
+    let marked = focused && editor.marked == field;
     let room = width.saturating_sub(LABEL + 2);
     let mark = if marked { "▸" } else { " " };
     let name = Span::styled(
         format!("{mark}{:<LABEL$}", field.label()),
         theme.style(Role::Quiet),
     );
-    let value = match state.plan.error(field) {
+    let value = match editor.error(field) {
         Some(why) => Span::styled(clipped(&format!("! {why}"), room), theme.style(Role::Bad)),
-        None => Span::raw(clipped(state.plan.text(field), room)),
+        None => Span::raw(clipped(editor.text(field), room)),
     };
     let line = Line::from(vec![name, value]);
     if marked {
@@ -121,14 +135,14 @@ fn progress(state: &State, frame: &mut Frame, area: Rect) {
             ),
         )
     } else {
-        (bar(state, width), now(state, width))
+        (sweep_bar(state, width), now(state, width))
     };
     frame.render_widget(first, rows[0]);
     frame.render_widget(second, rows[1]);
 }
 
 /// `████░░░░ 45 %  12 of 44 runs  0:41, about 0:52 left`
-fn bar(state: &State, width: usize) -> Line<'static> {
+fn sweep_bar(state: &State, width: usize) -> Line<'static> {
     let sweep = &state.sweep;
     let (done, failed) = sweep.runs.finished();
     let elapsed = sweep.ended.unwrap_or(state.clock) - sweep.began;
@@ -149,14 +163,16 @@ fn bar(state: &State, width: usize) -> Line<'static> {
         _ => format!("complete in {}", clock(elapsed)),
     };
     text = format!("{text}  {time}");
+    bar(state.theme, sweep.done, text, width)
+}
+
+/// A bar of the share that is done, and a text behind it.
+pub(super) fn bar(theme: Theme, done: f64, text: String, width: usize) -> Line<'static> {
     let room = width.saturating_sub(text.chars().count()).min(40);
-    let full = (sweep.done * room as f64).round() as usize;
+    let full = ((done * room as f64).round() as usize).min(room);
     Line::from(vec![
-        Span::styled("█".repeat(full.min(room)), state.theme.style(Role::Focus)),
-        Span::styled(
-            "░".repeat(room - full.min(room)),
-            state.theme.style(Role::Quiet),
-        ),
+        Span::styled("█".repeat(full), theme.style(Role::Focus)),
+        Span::styled("░".repeat(room - full), theme.style(Role::Quiet)),
         Span::raw(text),
     ])
 }
@@ -166,14 +182,14 @@ fn now(state: &State, width: usize) -> Line<'static> {
     let runs = &state.sweep.runs;
     let text = match runs.current.and_then(|at| runs.rows.get(at)) {
         Some(row) => live(row, width),
-        None if state.sweep.writing => "writing the report and its plots ...".to_owned(),
-        None => match (&state.sweep.unsaved, &state.sweep.bundle) {
+        None if state.sweep.kept.writing => "writing the report and its plots ...".to_owned(),
+        None => match (&state.sweep.kept.unsaved, &state.sweep.kept.bundle) {
             (Some(why), _) => format!("NOT SAVED: {why}"),
             (None, Some(path)) => format!("report: {}", path.display()),
             (None, None) => "preparing scenes and rays ...".to_owned(),
         },
     };
-    let role = if state.sweep.unsaved.is_some() {
+    let role = if state.sweep.kept.unsaved.is_some() {
         Role::Bad
     } else {
         Role::Text

@@ -272,7 +272,9 @@ impl AcceleratorEntry {
 }
 
 /// All accelerators, in the order in which they are listed.
-pub const ACCELERATORS: &[AcceleratorEntry] = &[
+///
+/// A static, not a constant: a constant's functions would be compiled anew, for every kernel, in each program that names it.
+pub static ACCELERATORS: &[AcceleratorEntry] = &[
     brute::ENTRY,
     grid::ENTRY,
     kd_tree::ENTRY,

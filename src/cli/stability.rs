@@ -1,5 +1,6 @@
 //! `raylab stability`: where each kernel and each accelerator breaks, as a lettered map or as JSON.
 
+use std::fmt::Write;
 use std::path::Path;
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
@@ -117,7 +118,7 @@ fn text(map: &Map) -> String {
         text.push_str(&matrix("accelerators", &map.accels, map, Map::accel_cell));
     }
     let letters = Verdict::ALL.map(|v| format!("{} {}", v.letter(), v.about()));
-    text.push_str(&format!("\n{}\n", letters.join("   ")));
+    let _ = writeln!(text, "\n{}", letters.join("   "));
     for verdict in [
         Verdict::Fails,
         Verdict::Gone,
@@ -141,19 +142,16 @@ fn matrix<'m>(
     let width = map.cases.iter().map(|c| c.len()).max().unwrap_or(0);
     let mut text = String::new();
     for (i, method) in methods.iter().enumerate() {
-        text.push_str(&format!(
-            "{:>width$}{} {method}\n",
-            "",
-            "   │".repeat(i) + "   ┌"
-        ));
+        let lines = "   │".repeat(i) + "   ┌";
+        let _ = writeln!(text, "{:>width$}{lines} {method}", "");
     }
-    text.push_str(&format!("{title}\n"));
+    let _ = writeln!(text, "{title}");
     for case in &map.cases {
         let letters = methods.iter().map(|method| {
             let letter = of(map, method, case).map_or(' ', |cell| cell.verdict.letter());
             format!("   {letter}")
         });
-        text.push_str(&format!("{case:<width$}{}\n", letters.collect::<String>()));
+        let _ = writeln!(text, "{case:<width$}{}", letters.collect::<String>());
     }
     text
 }

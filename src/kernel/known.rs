@@ -175,7 +175,7 @@ mod tests {
         let room = rational(known.error * (1.0 + 1e-6));
         let within = |x: &BigRational| {
             let off = x - rational(known.value);
-            &off <= &room && &-off <= &room
+            off <= room && -off <= room
         };
         within(exact) && computed.is_finite() && within(&rational(f64::from(computed)))
     }

@@ -43,13 +43,13 @@ impl MollerTrumboreF64 {
 struct Wide<const N: usize>([f64; N]);
 
 macro_rules! operators {
-    ($($trait:ident $method:ident $op:tt),*) => {$(
+    ($($trait:ident $method:ident),*) => {$(
         impl<const N: usize> $trait for Wide<N> {
             type Output = Self;
             #[inline(always)]
             fn $method(mut self, other: Self) -> Self {
                 for (x, y) in self.0.iter_mut().zip(other.0) {
-                    *x = *x $op y;
+                    *x = (*x).$method(y);
                 }
                 self
             }
@@ -57,7 +57,7 @@ macro_rules! operators {
     )*};
 }
 
-operators!(Add add +, Sub sub -, Mul mul *);
+operators!(Add add, Sub sub, Mul mul);
 
 /// A vector a lane.
 #[derive(Clone, Copy)]
@@ -111,18 +111,20 @@ fn test<const N: usize>(
     let s = WideVec3::of(origin).minus(a);
     let q = s.cross(e1);
     let (t, u, v) = (e2.dot(q), s.dot(p), dir.dot(q));
-    let mut answers = [[0.0; N]; 4];
+    let [mut hits, mut ts, mut us, mut vs] = [[0.0; N]; 4];
     for lane in 0..N {
         let inv_det = 1.0 / det.0[lane];
         let (u, v) = (u.0[lane] * inv_det, v.0[lane] * inv_det);
         // A zero determinant makes u and v infinite or NaN. No branches: the lanes run side by side.
-        let hit = (det.0[lane] != 0.0) & (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0);
-        answers[0][lane] = if hit { 1.0 } else { 0.0 };
-        answers[1][lane] = (t.0[lane] * inv_det) as f32;
-        answers[2][lane] = u as f32;
-        answers[3][lane] = v as f32;
+        let not_parallel = u32::from(det.0[lane] != 0.0);
+        let inside = u32::from(u >= 0.0) & u32::from(v >= 0.0) & u32::from(u + v <= 1.0);
+        let hit = not_parallel & inside == 1;
+        hits[lane] = if hit { 1.0 } else { 0.0 };
+        ts[lane] = (t.0[lane] * inv_det) as f32;
+        us[lane] = u as f32;
+        vs[lane] = v as f32;
     }
-    answers
+    [hits, ts, us, vs]
 }
 
 /// The rows of vectors in lanes from `first` on; those after the last lane repeat it.
@@ -131,14 +133,14 @@ fn rows_of<const W: usize, const N: usize, L: Lane<W>>(
     v: LaneVec3<L>,
     first: usize,
 ) -> [[f32; N]; 3] {
-    let mut rows = [[0.0; N]; 3];
+    let [mut xs, mut ys, mut zs] = [[0.0; N]; 3];
     for lane in 0..N {
         let from = (first + lane).min(L::N - 1);
-        rows[0][lane] = v.x.get(from);
-        rows[1][lane] = v.y.get(from);
-        rows[2][lane] = v.z.get(from);
+        xs[lane] = v.x.get(from);
+        ys[lane] = v.y.get(from);
+        zs[lane] = v.z.get(from);
     }
-    rows
+    [xs, ys, zs]
 }
 
 /// Tests `N` lanes from `first` on and writes their answers.

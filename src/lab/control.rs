@@ -1,6 +1,10 @@
 //! How a running sweep is steered from other threads.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::Duration;
+
+/// How often a paused experiment looks whether it may go on.
+const PAUSE: Duration = Duration::from_millis(20);
 
 /// How others steer a running sweep, and say that they disturb it.
 #[derive(Debug, Default)]
@@ -32,6 +36,16 @@ impl Control {
     /// Whether it waits right now: nothing is built, counted or timed.
     pub fn waiting(&self) -> bool {
         self.waiting.load(Ordering::Relaxed)
+    }
+    /// Waits while it is asked to, and says so meanwhile; whether to go on, or to end. To be asked by the experiment where
+    /// nothing is being timed.
+    pub fn may_go_on(&self) -> bool {
+        while self.paused() && !self.stopped() {
+            self.set_waiting(true);
+            std::thread::sleep(PAUSE);
+        }
+        self.set_waiting(false);
+        !self.stopped()
     }
     /// Said by the sweep when it begins and ends to wait.
     pub fn set_waiting(&self, waiting: bool) {

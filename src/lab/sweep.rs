@@ -15,7 +15,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use rand_core::Rng;
 use rand_pcg::Pcg32;
@@ -33,9 +33,6 @@ use super::{Control, Event, LabError, Plan, RunConfig, RunRecord};
 
 /// How often a sample is taken again when something disturbed it.
 const RETAKES: usize = 5;
-
-/// How often a paused sweep looks whether it may go on.
-const PAUSE: Duration = Duration::from_millis(20);
 
 /// What an earlier sweep of the same plan has left.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -146,7 +143,7 @@ struct Sweep<'a> {
 impl Sweep<'_> {
     /// Makes all runs of a group.
     fn group(&mut self, runs: &[(String, RunConfig)], stage: &Stage, shared: &mut Shared) {
-        if !self.may_go_on() {
+        if !self.control.may_go_on() {
             return;
         }
         let first = &runs[0].1;
@@ -224,7 +221,7 @@ impl Sweep<'_> {
     ) -> Vec<Live> {
         let mut live: Vec<Live> = Vec::new();
         let mut bytes = 0;
-        while bytes < self.plan.memory_limit && self.may_go_on() {
+        while bytes < self.plan.memory_limit && self.control.may_go_on() {
             let Some((id, config)) = waiting.next() else {
                 break;
             };
@@ -290,7 +287,7 @@ impl Sweep<'_> {
     fn take_sample(&mut self, run: &mut Live, setting: &Setting) -> Option<f64> {
         let pool = setting.pools.of(setting.threads);
         for attempt in 0..=RETAKES {
-            if !self.may_go_on() {
+            if !self.control.may_go_on() {
                 return None;
             }
             let before = self.control.disturbances();
@@ -308,16 +305,6 @@ impl Sweep<'_> {
             }
         }
         None
-    }
-
-    /// Waits while the sweep is paused; whether it may go on, or is stopped.
-    fn may_go_on(&self) -> bool {
-        while self.control.paused() && !self.control.stopped() {
-            self.control.set_waiting(true);
-            std::thread::sleep(PAUSE);
-        }
-        self.control.set_waiting(false);
-        !self.control.stopped()
     }
 
     /// Fisher and Yates.

@@ -58,10 +58,10 @@ impl BoxTest for NaiveSlabs {
     /// the other plane's infinity; and of a box that is touched in a corner, entry and exit are rounded apart.
     fn clip(&self, corners: &Corners, limit: f32) -> (f32, f32) {
         let (mut entry, mut exit) = (self.t_min, limit);
+        let [least, greatest] = corners;
         for axis in 0..3 {
-            let at =
-                |corner: usize| (corners[corner][axis] - self.origin[axis]) * self.inverse[axis];
-            let (a, b) = (at(0), at(1));
+            let at = |plane: f32| (plane - self.origin[axis]) * self.inverse[axis];
+            let (a, b) = (at(least[axis]), at(greatest[axis]));
             entry = entry.max(a.min(b));
             exit = exit.min(a.max(b));
         }

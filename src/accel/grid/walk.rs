@@ -91,8 +91,12 @@ impl<const ACCUMULATE: bool> Walk<ACCUMULATE> {
     #[inline(always)]
     pub fn new(lattice: &Lattice, ray: &Ray) -> Option<Self> {
         let [entry, end] = clip(lattice, ray)?;
-        // 24 bits of the entry: the product with an `f32` is exact in `f64`.
-        let base = f64::from_bits(entry.to_bits() & !0x1FFF_FFFF);
+        // 24 bits of the entry: the product with an `f32` is exact in `f64`. The exhibit counts from the ray's origin.
+        let base = if ACCUMULATE {
+            0.0
+        } else {
+            f64::from_bits(entry.to_bits() & !0x1FFF_FFFF)
+        };
         let mut walk = Self {
             cell: 0,
             base: base - base.abs() * T_ERROR,

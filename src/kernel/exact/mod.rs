@@ -9,12 +9,12 @@
 //! integers    the sign itself                                                     [sides]
 //! ```
 //!
-//! A hit's `t` is a quotient of two determinants in `f64`, or of two integers where `f64` does not suffice ([`crossing`]):
+//! A hit's `t` is a quotient of two determinants in `f64`, or of two integers where `f64` does not suffice:
 //! always one of the two `f32` next to the true one. Where two hits, or a hit and an end of the interval, are too near
 //! for their `f32` to tell, the quotients are compared by cross-multiplication.
 //!
 //! **The bound of the filter.** With u = 2⁻²⁴, the sheared coordinates X, Y of the corners and their depths Z, as in
-//! [`super::shear`]: the shear is at most 1, so each sheared coordinate is off by at most 2u·|X| + 4u·|Z| (a difference; a
+//! the kernel `woop`: the shear is at most 1, so each sheared coordinate is off by at most 2u·|X| + 4u·|Z| (a difference; a
 //! difference, a quotient and a product; a difference), and an edge function, two products of these and a difference, by
 //!
 //! ```text

@@ -1,7 +1,7 @@
 //! What is expected to fail: data with bounds. A test fails when a failure gets worse, and when one disappears.
 //!
-//! The rows stand in `rows`. A row of a kernel is about the kernel in brute force. Accelerators have none but exhibits: their rows are measured with
-//! `woop`, and with another kernel the mistake that an exhibit shows explains whatever fails.
+//! The rows stand in `rows`. A row of a kernel is about the kernel in brute force. Accelerators have none but exhibits:
+//! their rows are measured with `woop`, and with another kernel the mistake that an exhibit shows explains whatever fails.
 
 use crate::registry::Choice;
 

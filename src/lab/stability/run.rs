@@ -211,7 +211,7 @@ impl<'a> Trial<'a> {
         let mut at_accel = first + self.plan.kernels.len();
         let mut brutes = Vec::new();
         for (i, kernel) in self.plan.kernels.iter().enumerate() {
-            if self.control.stopped() {
+            if !self.control.may_go_on() {
                 return;
             }
             let (cell, answers) = self.alone(kernel);
@@ -223,7 +223,7 @@ impl<'a> Trial<'a> {
         }
         for accel in self.plan.structures() {
             for (kernel, brute) in brutes.iter().filter(|(k, _)| tried(k)) {
-                if self.control.stopped() {
+                if !self.control.may_go_on() {
                     return;
                 }
                 let cell = self.with(kernel, accel, brute);

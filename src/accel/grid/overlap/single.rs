@@ -18,7 +18,7 @@ pub(in super::super) struct SingleSeparating {
 impl Overlap for SingleSeparating {
     fn new(corners: [DVec3; 3]) -> Self {
         Self {
-            corners: corners.map(|p| p.as_vec3()),
+            corners: corners.map(DVec3::as_vec3),
         }
     }
 

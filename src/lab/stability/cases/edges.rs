@@ -135,5 +135,5 @@ fn rim(i: u32, count: u32) -> DVec3 {
         2 => (-x, -y),
         _ => (y, -x),
     };
-    DVec3::new(x, y, if i % 2 == 0 { 0.05 } else { -0.05 })
+    DVec3::new(x, y, if i.is_multiple_of(2) { 0.05 } else { -0.05 })
 }

@@ -38,13 +38,12 @@ pub(super) const SPLIT_PLANES_ON_VERTICES: CaseEntry = CaseEntry {
         let triangles = rounded(&lattice(cells(4)));
         let rays: Vec<Ray> = (0..2 * RAYS)
             .map(|i| {
-                let target = match i % 2 {
+                let target = if i % 2 == 0 {
                     // A vertex with squares on all its sides.
-                    0 => Vec3::from([(); 3].map(|()| (1 + dice.below(3)) as f32)),
-                    _ => {
-                        let corners = pick(dice, &triangles);
-                        dice.inside(exact(corners)).as_vec3()
-                    }
+                    Vec3::from([(); 3].map(|()| (1 + dice.below(3)) as f32))
+                } else {
+                    let corners = pick(dice, &triangles);
+                    dice.inside(exact(corners)).as_vec3()
                 };
                 if dice.below(2) == 0 {
                     let along = dice.axis();

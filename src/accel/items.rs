@@ -30,7 +30,7 @@ pub trait Items: Sized + Send + Sync + 'static {
     /// A ray prepared for the test.
     type Prepared<K: Kernel, I: Isa>: Copy;
 
-    /// Packs the triangles with these indices, in this order; for blocks whole ones, see [`fill`].
+    /// Packs the triangles with these indices, in this order; for blocks whole ones, see `fill`.
     fn pack<K: Kernel>(kernel: &K, mesh: &Mesh, slots: &[u32]) -> Vec<Self::Item<K>>;
 
     /// The triangle in each lane of each block.

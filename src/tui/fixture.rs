@@ -206,7 +206,7 @@ pub fn tried() -> State {
 pub fn tried_in(mut state: State) -> State {
     static TOLD: OnceLock<Vec<StabilityEvent>> = OnceLock::new();
     let plan = StabilityPlan {
-        cases: vec!["ordinary", "closed-edges", "far-origins"],
+        cases: vec!["ordinary", "closed-edges", "duplicates"],
         kernels: ["woop", "moller-trumbore"]
             .map(|k| kernel::parse(k).unwrap())
             .to_vec(),

@@ -40,8 +40,9 @@ pub fn first_wrong(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::accel;
     use crate::geometry::Vec3;
-    use crate::{accel, kernel};
+    use crate::kernel;
 
     #[test]
     fn the_first_leak_is_found_behind_rays_that_are_decided_right() {

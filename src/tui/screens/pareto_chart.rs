@@ -144,7 +144,7 @@ impl ParetoChart<'_> {
         for y in plot.top()..plot.bottom() {
             buffer.set_string(left, y, "│", quiet);
         }
-        let width = (left - area.x) as usize;
+        let width = (left - area.x) as usize - 1;
         for (log, text) in ticks {
             let y = plot.y + plane.y.row(*log, plane.rows());
             buffer.set_string(left, y, "┤", quiet);

@@ -124,7 +124,7 @@ pub(super) const THROUGH_CELL_CORNERS: CaseEntry = CaseEntry {
 
 pub(super) const STARTS_ON_CELL_FACES: CaseEntry = CaseEntry {
     name: "starts-on-cell-faces",
-    about: "Rays that begin on faces, edges and corners of cells: in which cell do they begin?",
+    about: "Rays that begin on faces, edges and corners of cells, so that any of several cells could hold their start.",
     group: "cells",
     source: "truncation of a coordinate to a cell",
     quantity: "cell",
@@ -144,7 +144,7 @@ pub(super) const STARTS_ON_CELL_FACES: CaseEntry = CaseEntry {
 
 pub(super) const TRIANGLES_ON_CELL_PLANES: CaseEntry = CaseEntry {
     name: "triangles-on-cell-planes",
-    about: "Squares on the planes between cells of boxes of odd sizes: which cells list them?",
+    about: "Squares on the planes between cells of boxes of odd sizes, which no cell may lose.",
     group: "cells",
     source: "the f32 separating-axis test in centre and half-extent form loses them from both cells",
     quantity: "n",

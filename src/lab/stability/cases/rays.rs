@@ -95,7 +95,7 @@ pub(super) const STARTS_ON_SURFACES: CaseEntry = CaseEntry {
 
 pub(super) const STARTS_BESIDE_SURFACES: CaseEntry = CaseEntry {
     name: "starts-beside-surfaces",
-    about: "Rays that begin within rounding of a triangle of a moved ball: on which side do they start?",
+    about: "Rays that begin within rounding of a triangle of a moved ball, on one side or the other.",
     group: "rays",
     source: "Wächter and Binder 2019: self-intersection of secondary rays",
     quantity: "offset",

@@ -202,7 +202,7 @@ pub(super) const COPLANAR: CaseEntry = CaseEntry {
 
 pub(super) const CLOSE_LAYERS: CaseEntry = CaseEntry {
     name: "close-layers",
-    about: "Sheets one behind another, ever closer: which one is nearest?",
+    about: "Sheets one behind another, ever closer, of which the first must win.",
     group: "triangles",
     source: "paper stacks, double walls and decals",
     quantity: "distance",

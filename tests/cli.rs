@@ -503,6 +503,8 @@ fn an_inspected_ray_is_a_table_that_ends_in_its_answer() {
     let away = [
         "inspect",
         "plane:2",
+        "--accel",
+        "bvh",
         "--origin",
         "0.3,0.2,5",
         "--dir",

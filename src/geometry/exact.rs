@@ -10,6 +10,9 @@
 //! a product of two determinants:          1,674 bits <= 27 limbs
 //! ```
 //!
+//! Nearly all inputs are of one magnitude and need a fraction of that; [`span`] tells, and [`WideInt`] has the size that
+//! is asked for.
+//!
 //! **Source:** schoolbook arithmetic, e.g. D. Knuth, "The Art of Computer Programming" vol. 2, §4.3.1.
 //! **Differs:** sign and magnitude in a fixed array with a length, since nearly all values use one to three limbs.
 
@@ -19,14 +22,18 @@ use std::ops::{Add, Mul, Neg, Sub};
 /// Limbs of 64 bits: 27 by the count above, and one for the carry of a sum.
 const LIMBS: usize = 28;
 
-/// An exact integer of at most 1,792 bits. A result that would be larger is a broken invariant of the caller and panics.
+/// An exact integer of any determinant of `f32`, and of the product of two: 1,792 bits.
+pub type ExactInt = WideInt<LIMBS>;
+
+/// An exact integer of at most `N` limbs of 64 bits. A result that would be larger is a broken invariant of the caller
+/// and panics.
 #[derive(Debug, Clone, Copy)]
-pub struct ExactInt {
+pub struct WideInt<const N: usize> {
     negative: bool,
     /// Limbs in use; the highest of them is not 0, and zero has none.
     len: usize,
     /// Least significant first; 0 beyond `len`.
-    limbs: [u64; LIMBS],
+    limbs: [u64; N],
 }
 
 /// A finite `f32` as `mantissa · 2^exponent` with an odd mantissa; zero is `(0, 0)`.
@@ -58,12 +65,24 @@ pub fn common_exponent(xs: impl IntoIterator<Item = f32>) -> i32 {
         .unwrap_or(0)
 }
 
-impl ExactInt {
+/// Bits from the highest of any of `xs` to the common exponent of all: how wide their integers are. 0 where all are
+/// zero.
+pub fn span(xs: impl IntoIterator<Item = f32>) -> u32 {
+    let (mut low, mut high) = (i32::MAX, i32::MIN);
+    for x in xs.into_iter().filter(|&x| x != 0.0) {
+        let (mantissa, exponent) = decompose(x);
+        low = low.min(exponent);
+        high = high.max(exponent + 32 - mantissa.leading_zeros() as i32);
+    }
+    if low > high { 0 } else { (high - low) as u32 }
+}
+
+impl<const N: usize> WideInt<N> {
     /// 0.
     pub const ZERO: Self = Self {
         negative: false,
         len: 0,
-        limbs: [0; LIMBS],
+        limbs: [0; N],
     };
 
     /// `x / 2^unit`, which must be whole: `unit` at most the exponent of `x`.
@@ -99,7 +118,7 @@ impl ExactInt {
                 out.limbs[i + whole + 1] = carry;
             }
         }
-        out.trimmed((self.len + whole + 1).min(LIMBS))
+        out.trimmed((self.len + whole + 1).min(N))
     }
 
     /// -1, 0 or 1.
@@ -161,7 +180,7 @@ impl ExactInt {
         if carry != 0 {
             out.limbs[len] = 1;
         }
-        out.trimmed((len + 1).min(LIMBS))
+        out.trimmed((len + 1).min(N))
     }
 
     /// `|self| − |other|`, where the first is not less.
@@ -178,7 +197,7 @@ impl ExactInt {
     }
 }
 
-impl Neg for ExactInt {
+impl<const N: usize> Neg for WideInt<N> {
     type Output = Self;
     fn neg(self) -> Self {
         Self {
@@ -188,7 +207,7 @@ impl Neg for ExactInt {
     }
 }
 
-impl Add for ExactInt {
+impl<const N: usize> Add for WideInt<N> {
     type Output = Self;
     fn add(self, other: Self) -> Self {
         let (sum, negative) = if self.negative == other.negative {
@@ -205,14 +224,14 @@ impl Add for ExactInt {
     }
 }
 
-impl Sub for ExactInt {
+impl<const N: usize> Sub for WideInt<N> {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
         self + -other
     }
 }
 
-impl Mul for ExactInt {
+impl<const N: usize> Mul for WideInt<N> {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
         let mut out = Self::ZERO;
@@ -228,25 +247,25 @@ impl Mul for ExactInt {
             }
         }
         out.negative = self.negative != other.negative;
-        out.trimmed((self.len + other.len).min(LIMBS))
+        out.trimmed((self.len + other.len).min(N))
     }
 }
 
-impl PartialEq for ExactInt {
+impl<const N: usize> PartialEq for WideInt<N> {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
 
-impl Eq for ExactInt {}
+impl<const N: usize> Eq for WideInt<N> {}
 
-impl PartialOrd for ExactInt {
+impl<const N: usize> PartialOrd for WideInt<N> {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl Ord for ExactInt {
+impl<const N: usize> Ord for WideInt<N> {
     fn cmp(&self, other: &Self) -> Ordering {
         match (self.signum(), other.signum()) {
             (1, 1) => self.compare_magnitude(other),
@@ -256,18 +275,22 @@ impl Ord for ExactInt {
     }
 }
 
-/// A vector of exact integers.
+/// A vector of exact integers of any size that a determinant of `f32` needs.
 pub type ExactVec3 = [ExactInt; 3];
 
 /// `a − b`.
 #[must_use]
-pub fn minus(a: &ExactVec3, b: &ExactVec3) -> ExactVec3 {
+pub fn minus<const N: usize>(a: &[WideInt<N>; 3], b: &[WideInt<N>; 3]) -> [WideInt<N>; 3] {
     [0, 1, 2].map(|i| a[i] - b[i])
 }
 
 /// The determinant of three vectors, a·(b × c).
 #[must_use]
-pub fn det(a: &ExactVec3, b: &ExactVec3, c: &ExactVec3) -> ExactInt {
+pub fn det<const N: usize>(
+    a: &[WideInt<N>; 3],
+    b: &[WideInt<N>; 3],
+    c: &[WideInt<N>; 3],
+) -> WideInt<N> {
     a[0] * (b[1] * c[2] - b[2] * c[1])
         + a[1] * (b[2] * c[0] - b[0] * c[2])
         + a[2] * (b[0] * c[1] - b[1] * c[0])
@@ -306,6 +329,14 @@ mod tests {
         assert_eq!(decompose(1e-45), (1, -149));
         assert_eq!(decompose(f32::MAX), ((1 << 24) - 1, 104));
         assert_eq!(common_exponent([0.5, 4.0, 0.0]), -1);
+    }
+
+    #[test]
+    fn the_span_is_that_of_the_widest_integer() {
+        assert_eq!(span([1.0, -6.0, 0.0]), 3);
+        assert_eq!(span([0.0, -0.0]), 0);
+        assert_eq!(span([f32::MAX, 1e-45]), 277);
+        assert_eq!(span([1.0, 1.0 + f32::EPSILON]), 24);
     }
 
     #[test]

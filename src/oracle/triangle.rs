@@ -14,7 +14,7 @@
 
 use std::cmp::Ordering;
 
-use crate::geometry::exact::{self, ExactInt, ExactVec3};
+use crate::geometry::exact::{self, ExactInt, WideInt};
 use crate::geometry::{DVec3, Ray, Vec3};
 
 /// Seven or eight roundings of `f64`, (8 + ε)·2⁻⁵³, with room for the rounding of the permanent itself.
@@ -95,19 +95,46 @@ fn line_meets(ray: &Ray, corners: &[Vec3; 3]) -> bool {
     signs != [0; 3] && !(signs.contains(&1) && signs.contains(&-1))
 }
 
+/// Limbs that hold a product of two determinants of coordinates that span at most [`NARROW_SPAN`] bits, as nearly all
+/// do: 6·(80 + 1) + 8 bits.
+const NARROW: usize = 8;
+const NARROW_SPAN: u32 = 80;
+/// Limbs that hold it for any.
+const WIDE: usize = 28;
+
+/// Bits that the coordinates of ray and corners span.
+fn span(ray: &Ray, corners: &[Vec3; 3]) -> u32 {
+    let vectors = [ray.origin, ray.dir, corners[0], corners[1], corners[2]];
+    exact::span(vectors.iter().flat_map(Vec3::to_array))
+}
+
 /// Replaces unknown signs by exact ones.
 #[cold]
 fn exact_signs(ray: &Ray, corners: &[Vec3; 3], signs: [Option<i32>; 3]) -> [i32; 3] {
-    let (dir, p) = integers(ray, corners);
+    if span(ray, corners) <= NARROW_SPAN {
+        signs_on_integers::<NARROW>(ray, corners, signs)
+    } else {
+        signs_on_integers::<WIDE>(ray, corners, signs)
+    }
+}
+
+fn signs_on_integers<const N: usize>(
+    ray: &Ray,
+    corners: &[Vec3; 3],
+    signs: [Option<i32>; 3],
+) -> [i32; 3] {
+    let (dir, p) = integers::<N>(ray, corners);
     [(0, 1), (1, 2), (2, 0)]
         .map(|(i, j)| signs[i].unwrap_or_else(|| exact::det(&dir, &p[i], &p[j]).signum()))
 }
 
+type Vector<const N: usize> = [WideInt<N>; 3];
+
 /// Direction, and corners relative to the origin, in the coarsest common unit.
-fn integers(ray: &Ray, corners: &[Vec3; 3]) -> (ExactVec3, [ExactVec3; 3]) {
+fn integers<const N: usize>(ray: &Ray, corners: &[Vec3; 3]) -> (Vector<N>, [Vector<N>; 3]) {
     let vectors = [ray.origin, ray.dir, corners[0], corners[1], corners[2]];
     let unit = exact::common_exponent(vectors.iter().flat_map(Vec3::to_array));
-    let of = |v: Vec3| v.to_array().map(|x| ExactInt::of(x, unit));
+    let of = |v: Vec3| v.to_array().map(|x| WideInt::of(x, unit));
     let origin = of(ray.origin);
     (of(ray.dir), corners.map(|v| exact::minus(&of(v), &origin)))
 }
@@ -152,13 +179,19 @@ impl ExactT {
         if self.error <= 8.9e-16 * self.approximate.abs() {
             return self.approximate;
         }
-        let (n, d) = self.fraction();
-        let ((n, en), (d, ed)) = (n.to_scaled_f64(), d.to_scaled_f64());
-        n / d * 2f64.powi(en - ed)
+        if self.is_narrow() {
+            quotient(self.fraction::<NARROW>())
+        } else {
+            quotient(self.fraction::<WIDE>())
+        }
+    }
+
+    fn is_narrow(&self) -> bool {
+        span(&self.ray, &self.corners) <= NARROW_SPAN
     }
 
     /// Numerator and denominator, the latter positive.
-    fn fraction(&self) -> (ExactInt, ExactInt) {
+    fn fraction<const N: usize>(&self) -> (WideInt<N>, WideInt<N>) {
         let (dir, [a, b, c]) = integers(&self.ray, &self.corners);
         let (e1, e2) = (exact::minus(&b, &a), exact::minus(&c, &a));
         let (n, d) = (exact::det(&a, &e1, &e2), exact::det(&dir, &e1, &e2));
@@ -175,13 +208,27 @@ impl ExactT {
         if f64::from(bound) > hi || bound == f32::INFINITY {
             return Ordering::Less;
         }
-        let (n, d) = self.fraction();
+        let (n, d) = self.fraction::<WIDE>();
         let unit = exact::decompose(bound).1;
         // Both sides times 2^-unit where that is a whole number.
         let below = unit.min(0);
         n.shifted(-below as u32)
             .cmp(&(ExactInt::of(bound, below) * d))
     }
+}
+
+/// `n / d` to about 50 bits.
+fn quotient<const N: usize>((n, d): (WideInt<N>, WideInt<N>)) -> f64 {
+    let ((n, en), (d, ed)) = (n.to_scaled_f64(), d.to_scaled_f64());
+    n / d * 2f64.powi(en - ed)
+}
+
+/// Compares two fractions with positive denominators.
+fn compare<const N: usize>(
+    (n1, d1): (WideInt<N>, WideInt<N>),
+    (n2, d2): (WideInt<N>, WideInt<N>),
+) -> Ordering {
+    (n1 * d2).cmp(&(n2 * d1))
 }
 
 impl PartialEq for ExactT {
@@ -211,8 +258,11 @@ impl Ord for ExactT {
         if self.ray == other.ray && self.corners == other.corners {
             return Ordering::Equal;
         }
-        let ((n1, d1), (n2, d2)) = (self.fraction(), other.fraction());
-        (n1 * d2).cmp(&(n2 * d1))
+        if self.is_narrow() && other.is_narrow() {
+            compare(self.fraction::<NARROW>(), other.fraction())
+        } else {
+            compare(self.fraction::<WIDE>(), other.fraction())
+        }
     }
 }
 

@@ -12,7 +12,7 @@
 //!
 //! Origin and direction are rounded to `f32`, the target is not: wherever the mesh lies, a ray passes its edge within an
 //! ulp of its length, on either side or exactly through it; what it really hits, the oracle says. `t` is 1 at the target
-//! and ends at 1 + 1/64: a ray that slips through is then a leak, not a hit on the far side.
+//! and ends 1/32 of the box's diagonal behind it: a ray that slips through is then a leak, not a hit on the far side.
 //!
 //! **No rims.** Where the mesh ends as seen along the ray (a silhouette, an open border), less than a rounding decides
 //! whether it is met at all, and no method can be blamed. `seam` beside this file tells such targets from those beyond
@@ -54,8 +54,10 @@ pub(super) const ENTRY: RaySetEntry = RaySetEntry {
     make: |request| Ok(make(request)),
 };
 
-/// Where a ray ends: 1/64 of its way behind its target.
-const BEHIND: f32 = 1.0 + 1.0 / 64.0;
+/// How far behind its target a ray ends, in diagonals of the box; …
+const BEHIND: f64 = 1.0 / 32.0;
+/// … and in its own length beside that, well beyond rounding.
+const ROUNDING: f64 = 1.0 / (1 << 16) as f64;
 
 /// Of this many rays one is aimed at a vertex.
 const ONE_VERTEX_OF: usize = 4;
@@ -148,8 +150,10 @@ impl<'a> Target<'a> {
             None => direction(random),
         };
         let origin = (self.point + away * distance).as_vec3();
+        let bounds = mesh.bounds();
+        let extent = (bounds.max.as_dvec3() - bounds.min.as_dvec3()).length();
         Ray {
-            t_max: BEHIND,
+            t_max: (1.0 + ROUNDING + BEHIND * extent / distance) as f32,
             ..Ray::new(origin, (self.point - origin.as_dvec3()).as_vec3())
         }
     }

@@ -156,12 +156,9 @@ fn another_seed_makes_other_rays_and_the_same_verdicts_of_the_sound() {
         ..small(2)
     };
     let map = stability(&plan, &Control::default(), &mut |_| {}).unwrap();
-    assert_eq!(
-        map.with(Verdict::Fails).count(),
-        0,
-        "{}",
-        told(map.with(Verdict::Fails))
-    );
+    // The bounds of the list are those of the suite's own rays: exhibits may fail a little more often with others.
+    let failing = || map.with(Verdict::Fails).filter(|c| !is_control(&c.accel));
+    assert_eq!(failing().count(), 0, "{}", told(failing()));
     let verdict = |accel, case| map.cell("woop", accel, case).unwrap().verdict;
     assert_eq!(verdict("grid", "flat-boxes"), Verdict::Ok);
     assert_eq!(verdict("bvh-naive-slab", "flat-boxes"), Verdict::Known);

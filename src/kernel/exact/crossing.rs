@@ -6,7 +6,7 @@
 
 use std::cmp::Ordering;
 
-use crate::geometry::exact::{self, ExactInt, ExactVec3};
+use crate::geometry::exact::{self, ExactInt, WideInt};
 use crate::geometry::{DVec3, Hit, Ray, Vec3};
 use crate::kernel::error;
 use crate::scene::Mesh;
@@ -17,6 +17,13 @@ const CLEAR: f64 = 1.0 / 1_048_576.0;
 
 /// Roundings of a determinant in `f64` in units of its permanent: eight, with room for the permanent's own.
 const ROUNDINGS: f64 = 9.0 * 1.110_223_024_625_156_5e-16;
+
+/// Limbs that hold a product of a numerator and a denominator whose coordinates span at most [`NARROW_SPAN`] bits, as nearly
+/// all do: (3·81 + 3) + (80 + 2·81 + 3) bits.
+const NARROW: usize = 8;
+const NARROW_SPAN: u32 = 80;
+/// Limbs that hold it for any.
+const WIDE: usize = 28;
 
 /// 2⁻²⁶: with such an error a quotient is still rounded to one of the two `f32` beside the true one.
 const ENOUGH: f64 = 1.490_116_119_384_765_6e-8;
@@ -53,7 +60,7 @@ fn largest(v: DVec3) -> f64 {
 #[cold]
 pub(super) fn without_area(corners: &[Vec3; 3]) -> bool {
     let unit = exact::common_exponent(corners.iter().flat_map(Vec3::to_array));
-    let [a, b, c] = corners.map(|v| integers(v, unit));
+    let [a, b, c] = corners.map(|v| integers::<WIDE>(v, unit));
     let (p, q) = (exact::minus(&b, &a), exact::minus(&c, &a));
     [(0, 1), (1, 2), (2, 0)]
         .iter()
@@ -61,8 +68,8 @@ pub(super) fn without_area(corners: &[Vec3; 3]) -> bool {
 }
 
 /// The components in units of 2^`unit`.
-fn integers(v: Vec3, unit: i32) -> ExactVec3 {
-    v.to_array().map(|x| ExactInt::of(x, unit))
+fn integers<const N: usize>(v: Vec3, unit: i32) -> [WideInt<N>; 3] {
+    v.to_array().map(|x| WideInt::of(x, unit))
 }
 
 /// A line that crosses a triangle's plane in one point.
@@ -108,23 +115,30 @@ impl Crossing {
         {
             return t as f32;
         }
-        let fraction = self.fraction(self.unit());
-        let ((n, en), (d, ed)) = (
-            fraction.numerator.to_scaled_f64(),
-            fraction.denominator.to_scaled_f64(),
-        );
-        // t lies between 2⁻⁸³⁷ and 2⁸³⁷ or is 0.
-        (n / d * 2_f64.powi(en - ed + fraction.exponent)) as f32
+        if self.span() <= NARROW_SPAN {
+            self.fraction::<NARROW>(self.unit()).quotient()
+        } else {
+            self.fraction::<WIDE>(self.unit()).quotient()
+        }
     }
 
+    /// Bits that the coordinates span, and those of the direction.
+    fn span(&self) -> u32 {
+        let dir = exact::span(self.dir.to_array());
+        dir.max(exact::span(self.coordinates()))
+    }
+
+    fn coordinates(&self) -> impl Iterator<Item = f32> {
+        let [a, b, c] = self.corners;
+        [self.origin, a, b, c].into_iter().flat_map(|v| v.to_array())
+    }
     /// The exponent in which the corners and the origin are whole.
     fn unit(&self) -> i32 {
-        let [a, b, c] = self.corners;
-        exact::common_exponent([self.origin, a, b, c].iter().flat_map(Vec3::to_array))
+        exact::common_exponent(self.coordinates())
     }
 
     /// `t` as a fraction, of corners and origin in units of 2^`unit`.
-    fn fraction(&self, unit: i32) -> Fraction {
+    fn fraction<const N: usize>(&self, unit: i32) -> Fraction<N> {
         let dir_unit = exact::common_exponent(self.dir.to_array());
         let [a, b, c] = self.corners.map(|v| integers(v, unit));
         let (e1, e2) = (exact::minus(&b, &a), exact::minus(&c, &a));
@@ -141,6 +155,9 @@ impl Crossing {
 
     /// Compares `t` with an end of an interval, which may be infinite.
     fn compare_with(&self, end: f32) -> Ordering {
+        if end == 0.0 && self.span() <= NARROW_SPAN {
+            return self.fraction::<NARROW>(self.unit()).numerator.signum().cmp(&0);
+        }
         if end.is_infinite() {
             return 0.0_f32.total_cmp(&end);
         }
@@ -154,7 +171,7 @@ impl Crossing {
             numerator,
             denominator,
             exponent,
-        } = self.fraction(self.unit());
+        } = self.fraction::<WIDE>(self.unit());
         // n·2^exponent against m·2^e·d.
         let e = exact::decompose(end).1;
         let (left, right) = (numerator, ExactInt::of(end, e) * denominator);
@@ -187,14 +204,34 @@ impl Crossing {
             }
         }
         let unit = self.unit().min(other.unit());
-        let (p, q) = (self.fraction(unit), other.fraction(unit));
-        (p.numerator * q.denominator).cmp(&(q.numerator * p.denominator))
+        let span = exact::span(self.coordinates().chain(other.coordinates()));
+        if span.max(exact::span(self.dir.to_array())) <= NARROW_SPAN {
+            self.fraction::<NARROW>(unit).compare(&other.fraction(unit))
+        } else {
+            self.fraction::<WIDE>(unit).compare(&other.fraction(unit))
+        }
     }
 }
 
 /// `numerator / denominator · 2^exponent`, the denominator positive.
-struct Fraction {
-    numerator: ExactInt,
-    denominator: ExactInt,
+struct Fraction<const N: usize> {
+    numerator: WideInt<N>,
+    denominator: WideInt<N>,
     exponent: i32,
+}
+
+impl<const N: usize> Fraction<N> {
+    fn quotient(&self) -> f32 {
+        let ((n, en), (d, ed)) = (
+            self.numerator.to_scaled_f64(),
+            self.denominator.to_scaled_f64(),
+        );
+        // t lies between 2⁻⁸³⁷ and 2⁸³⁷ or is 0.
+        (n / d * 2_f64.powi(en - ed + self.exponent)) as f32
+    }
+
+    /// Compares two fractions of one exponent.
+    fn compare(&self, other: &Self) -> Ordering {
+        (self.numerator * other.denominator).cmp(&(other.numerator * self.denominator))
+    }
 }

@@ -9,7 +9,7 @@
 //! In `f64` nothing overflows or underflows: differences of `f32` are 0 or between 2⁻¹⁴⁹ and 2¹²⁹, so products of four
 //! lie far within the range.
 
-use crate::geometry::exact::{self, ExactInt, ExactVec3};
+use crate::geometry::exact::{self, WideInt};
 use crate::geometry::{DVec3, Vec3};
 use crate::kernel::shear;
 
@@ -109,20 +109,34 @@ pub(super) fn weights(origin: Vec3, dir: Vec3, corners: &[Vec3; 3]) -> Option<[f
     Some([(v / sum) as f32, (w / sum) as f32])
 }
 
+/// Limbs that hold a determinant whose coordinates, and whose direction, span at most [`NARROW_SPAN`] bits, as nearly all do:
+/// 80 + 2·81 + 3 bits.
+const NARROW: usize = 4;
+const NARROW_SPAN: u32 = 80;
+/// Limbs that hold it for any.
+const WIDE: usize = 14;
+
 /// Replaces signs that are not sure by exact ones.
 #[cold]
 fn exact_signs(sides: &mut Sides, origin: Vec3, dir: Vec3, corners: &[Vec3; 3]) {
-    let (dir_unit, unit) = (
-        exact::common_exponent(dir.to_array()),
-        exact::common_exponent(
-            [origin, corners[0], corners[1], corners[2]]
-                .iter()
-                .flat_map(Vec3::to_array),
-        ),
-    );
-    let of = |v: Vec3, unit| -> ExactVec3 { v.to_array().map(|x| ExactInt::of(x, unit)) };
-    let (origin, d) = (of(origin, unit), of(dir, dir_unit));
-    let [a, b, c] = corners.map(|v| exact::minus(&of(v, unit), &origin));
+    let [a, b, c] = *corners;
+    let places = [origin, a, b, c];
+    let coordinates = || places.iter().flat_map(Vec3::to_array);
+    let span = exact::span(coordinates()).max(exact::span(dir.to_array()));
+    let unit = exact::common_exponent(coordinates());
+    if span <= NARROW_SPAN {
+        signs_on_integers::<NARROW>(sides, dir, &places, unit);
+    } else {
+        signs_on_integers::<WIDE>(sides, dir, &places, unit);
+    }
+}
+
+/// `places`: the origin and the corners, whole in units of 2^`unit`.
+fn signs_on_integers<const N: usize>(sides: &mut Sides, dir: Vec3, places: &[Vec3; 4], unit: i32) {
+    let of = |v: Vec3, unit| -> [WideInt<N>; 3] { v.to_array().map(|x| WideInt::of(x, unit)) };
+    let d = of(dir, exact::common_exponent(dir.to_array()));
+    let [origin, corners @ ..] = places.map(|v| of(v, unit));
+    let [a, b, c] = corners.map(|v| exact::minus(&v, &origin));
     // The edge functions have a factor d.z more, which is not 0, and the frame's axes are a rotation.
     let z = dir[shear::frame(dir)[2]];
     let factor = if z > 0.0 { 1 } else { -1 };

@@ -255,7 +255,8 @@ impl Ord for ExactT {
         if a.0 > b.1 {
             return Ordering::Greater;
         }
-        if self.ray == other.ray && self.corners == other.corners {
+        let is_copy = self.corners.iter().all(|v| other.corners.contains(v));
+        if self.ray == other.ray && is_copy {
             return Ordering::Equal;
         }
         if self.is_narrow() && other.is_narrow() {

@@ -158,6 +158,7 @@ fn a_ray_is_chosen_in_the_picture_and_walked_in_two_accelerators() {
     terminal.press("\r");
     terminal.wait_for("entry t");
     terminal.press(ESC);
+    terminal.wait_until("the slices again", |s| !s.contains("entry t"));
     terminal.press(ESC);
     terminal.wait_for("Enter inspect the ray");
     terminal.press("q");
@@ -212,7 +213,8 @@ fn the_stability_map_fills_and_a_failing_cell_opens_in_the_inspector() {
     terminal.press("\r");
     terminal.wait_for("complete in");
     terminal.press("n");
-    terminal.wait_for("fails as known: moller-trumbore on closed-edges");
+    terminal.wait_for("k moller-trumbore on closed-edges");
+    terminal.wait_for("fails as known: leak");
     terminal.press("o");
     terminal.wait_for("Wrote ");
     assert!(dir.path().join("results/failures").exists());

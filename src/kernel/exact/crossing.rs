@@ -130,7 +130,9 @@ impl Crossing {
 
     fn coordinates(&self) -> impl Iterator<Item = f32> {
         let [a, b, c] = self.corners;
-        [self.origin, a, b, c].into_iter().flat_map(|v| v.to_array())
+        [self.origin, a, b, c]
+            .into_iter()
+            .flat_map(|v| v.to_array())
     }
     /// The exponent in which the corners and the origin are whole.
     fn unit(&self) -> i32 {
@@ -156,7 +158,11 @@ impl Crossing {
     /// Compares `t` with an end of an interval, which may be infinite.
     fn compare_with(&self, end: f32) -> Ordering {
         if end == 0.0 && self.span() <= NARROW_SPAN {
-            return self.fraction::<NARROW>(self.unit()).numerator.signum().cmp(&0);
+            return self
+                .fraction::<NARROW>(self.unit())
+                .numerator
+                .signum()
+                .cmp(&0);
         }
         if end.is_infinite() {
             return 0.0_f32.total_cmp(&end);
@@ -192,7 +198,8 @@ impl Crossing {
     /// Compares two `t` of one line.
     #[cold]
     pub fn compare(&self, other: &Self) -> Ordering {
-        if self.corners == other.corners {
+        // One triangle, or copies of it wound or begun otherwise.
+        if self.corners.iter().all(|v| other.corners.contains(v)) {
             return Ordering::Equal;
         }
         if let (Some((t, error)), Some((s, other_error))) =

@@ -277,6 +277,9 @@ fn cell(state: &State, frame: &mut Frame, area: Rect) {
         return;
     };
     let mut lines: Vec<(String, Role)> = Vec::new();
+    let mut tell = |text: &str, role| {
+        lines.extend(wrapped(text, width).into_iter().map(|line| (line, role)));
+    };
     if let Some(cell) = stability.marked() {
         let method = if cell.of_kernel() {
             cell.kernel.clone()
@@ -284,45 +287,25 @@ fn cell(state: &State, frame: &mut Frame, area: Rect) {
             format!("{} with {}", cell.accel, cell.kernel)
         };
         let verdict = cell.verdict;
-        let head = format!(
-            "{} {}: {method} on {name}",
-            verdict.letter(),
-            verdict.about()
-        );
-        lines.push((head, role(verdict)));
+        let head = format!("{} {method} on {name}", verdict.letter());
+        tell(&head, role(verdict));
         let story = cell.story();
         let story = if story.is_empty() {
             format!("nothing wrong on {} rays", cell.rays())
         } else {
             story
         };
-        lines.extend(
-            wrapped(&story, width)
-                .into_iter()
-                .map(|line| (line, Role::Text)),
-        );
-        let rungs = rungs(cell);
-        lines.extend(
-            wrapped(&rungs, width)
-                .into_iter()
-                .map(|line| (line, Role::Text)),
-        );
+        tell(&format!("{}: {story}", verdict.about()), Role::Text);
+        tell(&rungs(cell), Role::Text);
     } else {
-        let method = stability
-            .rows()
-            .get(stability.row)
-            .map_or("", String::as_str);
-        lines.push((
-            format!("  {method} on {name}: not tried, or not yet"),
+        let rows = stability.rows();
+        let method = rows.get(stability.row).map_or("", String::as_str);
+        tell(
+            &format!("{method} on {name}: not tried, or not yet"),
             Role::Quiet,
-        ));
+        );
     }
-    let about = case(name).map_or("", |case| case.about);
-    lines.extend(
-        wrapped(about, width)
-            .into_iter()
-            .map(|line| (line, Role::Quiet)),
-    );
+    tell(case(name).map_or("", |case| case.about), Role::Quiet);
     for (y, (text, role)) in lines.into_iter().take(inner.height as usize).enumerate() {
         let row = Rect::new(inner.x + 1, inner.y + y as u16, inner.width - 1, 1);
         frame.render_widget(

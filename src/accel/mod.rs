@@ -22,13 +22,14 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::geometry::lanes::{InstructionSet, Isa};
+use crate::geometry::lanes::{InstructionSet, Isa, Portable};
 use crate::geometry::{Aabb, Hit, Ray};
 use crate::kernel;
 use crate::registry::{Choice, ChoiceError, ParamSpec, Params};
 use crate::scene::Mesh;
 
 mod batch;
+mod behind;
 mod brute;
 mod bvh;
 mod bvh_wide;
@@ -51,6 +52,7 @@ mod traced;
 mod visit;
 
 pub use batch::Rays;
+use behind::Behind;
 pub use brute::Brute;
 pub use bvh::Bvh;
 pub use items::{Blocks, Items, Singles};
@@ -70,6 +72,9 @@ pub trait Structure: Send + Sync + 'static {
     /// What the places that list triangles are called.
     const LEAF: PlaceKind = PlaceKind::Leaf;
 
+    /// Whether the traversal is compiled for each kernel and query, so that tests are no calls; else once, see `behind`.
+    const DIRECT: bool = true;
+
     /// A fresh scratch.
     fn scratch(&self) -> Self::Scratch;
 
@@ -85,8 +90,18 @@ pub trait Structure: Send + Sync + 'static {
         for index in 0..batch.rays().len() {
             let mut visitor = batch.begin(index);
             let ray = batch.rays()[index];
-            self.traverse::<R::Isa, _>(&ray, scratch, &mut visitor);
+            self.lead::<R::Isa, _>(&ray, scratch, &mut visitor);
             batch.finish(index, &visitor);
+        }
+    }
+
+    /// As [`Structure::traverse`], directly or with the visitor behind a pointer.
+    #[inline(always)]
+    fn lead<I: Isa, V: Visitor>(&self, ray: &Ray, scratch: &mut Self::Scratch, visitor: &mut V) {
+        if Self::DIRECT {
+            self.traverse::<I, _>(ray, scratch, visitor);
+        } else {
+            self.traverse::<Portable, _>(ray, scratch, &mut Behind::new(visitor));
         }
     }
 

@@ -1,6 +1,6 @@
 //! A query of one ray: it keeps the nearest hit of what a traversal offers.
 
-use crate::geometry::lanes::{Isa, Lane};
+use crate::geometry::lanes::{Isa, Lane, Task};
 use crate::geometry::{Hit, Ray};
 use crate::kernel::{Kernel, LaneHit};
 use crate::scene::Mesh;
@@ -115,6 +115,23 @@ pub(super) fn take<K: Kernel, const OCCLUSION: bool>(
     false
 }
 
+/// A test that is compiled for the query's instruction set.
+struct TestApart<'q, 'a, T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool> {
+    query: &'q mut Query<'a, T, K, I, C, OCCLUSION>,
+    item: u32,
+}
+
+impl<T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool> Task
+    for TestApart<'_, '_, T, K, I, C, OCCLUSION>
+{
+    type Out = bool;
+
+    #[inline(always)]
+    fn run<Here: Isa>(self) -> bool {
+        T::test(self.query, self.item)
+    }
+}
+
 impl<T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool> Visitor
     for Query<'_, T, K, I, C, OCCLUSION>
 {
@@ -128,6 +145,10 @@ impl<T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool> Visitor
     #[inline(always)]
     fn test(&mut self, item: u32) -> bool {
         T::test(self, item)
+    }
+
+    fn test_apart(&mut self, item: u32) -> bool {
+        I::enter(TestApart { query: self, item })
     }
 
     #[inline(always)]

@@ -112,8 +112,7 @@ impl<S: Structure, K: Kernel> Traced<S, K> {
         watch.begin();
         let mut query: Query<S::Items, K, Portable, &mut dyn Watch, OCCLUSION> =
             Query::new(&self.packed, ray, watch);
-        self.structure
-            .traverse::<Portable, _>(ray, scratch, &mut query);
+        self.structure.lead::<Portable, _>(ray, scratch, &mut query);
         query.best
     }
 

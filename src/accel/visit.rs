@@ -14,6 +14,11 @@ pub trait Visitor {
     /// traversal must return.
     fn test(&mut self, item: u32) -> bool;
 
+    /// As [`Visitor::test`], for callers that are compiled for no instruction set.
+    fn test_apart(&mut self, item: u32) -> bool {
+        self.test(item)
+    }
+
     /// A triangle was not tested, because this ray had tested it before.
     #[inline(always)]
     fn skipped(&mut self, _prim: u32) {}

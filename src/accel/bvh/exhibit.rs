@@ -2,10 +2,10 @@
 
 use crate::geometry::{Aabb, Ray};
 
-use super::super::exhibit::{Behind, Exhibit, Wrong};
+use super::super::exhibit::{Exhibit, Wrong};
 use super::super::slab::{BoxTest, Corners};
 use super::super::stack::Room;
-use super::super::{AcceleratorEntry, finish};
+use super::super::{AcceleratorEntry, Visitor, finish};
 use super::{Bvh, ENTRY};
 
 /// The tree with the naive slab test.
@@ -32,7 +32,7 @@ impl Wrong for NaiveSlab {
         &self.0
     }
 
-    fn lead(&self, ray: &Ray, room: &mut Room, visitor: &mut Behind) {
+    fn lead<V: Visitor>(&self, ray: &Ray, room: &mut Room, visitor: &mut V) {
         self.0.lead::<NaiveSlabs, _>(ray, room, visitor);
     }
 }

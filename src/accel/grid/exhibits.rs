@@ -9,8 +9,8 @@
 use crate::geometry::Ray;
 use crate::registry::Params;
 
-use super::super::exhibit::{Behind, Exhibit, Wrong};
-use super::super::{Accelerator, AcceleratorEntry, BuildError, BuildRequest, finish};
+use super::super::exhibit::{Exhibit, Wrong};
+use super::super::{Accelerator, AcceleratorEntry, BuildError, BuildRequest, Visitor, finish};
 use super::mailbox::Forgetful;
 use super::{ENTRY, Grid, OverlapTest, Settings};
 
@@ -79,7 +79,7 @@ impl<const ACCUMULATE: bool, const INSIDE_ONLY: bool> Wrong for Mistaken<ACCUMUL
         &self.0
     }
 
-    fn lead(&self, ray: &Ray, mailbox: &mut Forgetful, visitor: &mut Behind) {
+    fn lead<V: Visitor>(&self, ray: &Ray, mailbox: &mut Forgetful, visitor: &mut V) {
         self.0
             .lead::<ACCUMULATE, INSIDE_ONLY, _>(ray, mailbox, visitor);
     }

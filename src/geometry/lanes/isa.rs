@@ -43,6 +43,9 @@ pub trait Isa: Copy + Send + Sync + 'static {
     /// A number for each of the sixteen rays of a packet.
     type Rays: Lane<1>;
 
+    /// Runs `task`, with these lanes, in a function compiled for them: from code that knows the set but is compiled for none.
+    fn enter<T: Task>(task: T) -> T::Out;
+
     /// Sorts the lanes whose bit is set in `met` by key, the greatest first, and writes their `values` and `keys` to the
     /// front of the two rooms; what lies behind is overwritten with anything.
     ///
@@ -77,6 +80,11 @@ pub(super) const LANE_BITS: u32 = 7;
 impl Isa for Portable {
     type X8 = F32x8;
     type Rays = Pair<F32x8>;
+
+    #[inline(always)]
+    fn enter<T: Task>(task: T) -> T::Out {
+        task.run::<Self>()
+    }
 
     #[inline(always)]
     fn greatest_first(
@@ -114,6 +122,12 @@ impl Isa for Avx2 {
     type Rays = Pair<avx2::F32x8>;
 
     #[inline(always)]
+    fn enter<T: Task>(task: T) -> T::Out {
+        // SAFETY: whoever can name these lanes was called by a task that `InstructionSet::run` began.
+        unsafe { with_avx2(task) }
+    }
+
+    #[inline(always)]
     fn greatest_first(
         keys: avx2::F32x8,
         met: u32,
@@ -129,6 +143,12 @@ impl Isa for Avx2 {
 impl Isa for Avx512 {
     type X8 = avx512::F32x8;
     type Rays = avx512::F32x16;
+
+    #[inline(always)]
+    fn enter<T: Task>(task: T) -> T::Out {
+        // SAFETY: whoever can name these lanes was called by a task that `InstructionSet::run` began.
+        unsafe { with_avx512(task) }
+    }
 
     #[inline(always)]
     fn greatest_first(

@@ -1,0 +1,85 @@
+//! A visitor behind a pointer, for structures that are compiled once, not once a kernel and query.
+//!
+//! ```text
+//! DIRECT       traverse::<Query<woop, closest>>    traverse::<Query<woop, occlusion>>    traverse::<Query<exact, …>>  …
+//! not DIRECT   traverse::<Behind> ── one call an item ──▶ Query<woop, closest>, Query<woop, occlusion>, Query<exact, …>  …
+//! ```
+//!
+//! A call costs a few nanoseconds, and the compiler a second less for each kernel; [`Structure::DIRECT`] says what was
+//! chosen for each structure.
+//!
+//! [`Structure::DIRECT`]: super::Structure::DIRECT
+
+use super::visit::Visitor;
+
+/// What a visitor does.
+trait AnyVisitor {
+    fn step(&mut self, place: u64, leaf: bool, references: u32, entry: f64, exit: f64);
+    fn test(&mut self, item: u32) -> bool;
+    fn skipped(&mut self, prim: u32);
+    fn t_limit(&self) -> f32;
+    fn narrow(&mut self, from: f32, to: f32);
+}
+
+impl<V: Visitor> AnyVisitor for V {
+    fn step(&mut self, place: u64, leaf: bool, references: u32, entry: f64, exit: f64) {
+        Visitor::step(self, place, leaf, references, entry, exit);
+    }
+    fn test(&mut self, item: u32) -> bool {
+        Visitor::test_apart(self, item)
+    }
+    fn skipped(&mut self, prim: u32) {
+        Visitor::skipped(self, prim);
+    }
+    fn t_limit(&self) -> f32 {
+        Visitor::t_limit(self)
+    }
+    fn narrow(&mut self, from: f32, to: f32) {
+        Visitor::narrow(self, from, to);
+    }
+}
+
+/// A visitor behind a pointer.
+pub(super) struct Behind<'a> {
+    visitor: &'a mut dyn AnyVisitor,
+    watched: bool,
+}
+
+impl<'a> Behind<'a> {
+    pub fn new<V: Visitor>(visitor: &'a mut V) -> Self {
+        Self {
+            watched: V::WATCHED,
+            visitor,
+        }
+    }
+}
+
+impl Visitor for Behind<'_> {
+    // Whoever looks is told; for whoever does not, it is computed in vain.
+    const WATCHED: bool = true;
+
+    #[inline]
+    fn step(&mut self, place: u64, leaf: bool, references: u32, entry: f64, exit: f64) {
+        if self.watched {
+            self.visitor.step(place, leaf, references, entry, exit);
+        }
+    }
+    #[inline]
+    fn test(&mut self, item: u32) -> bool {
+        self.visitor.test(item)
+    }
+    #[inline]
+    fn skipped(&mut self, prim: u32) {
+        if self.watched {
+            self.visitor.skipped(prim);
+        }
+    }
+    #[inline]
+    fn t_limit(&self) -> f32 {
+        self.visitor.t_limit()
+    }
+    #[inline]
+    fn narrow(&mut self, from: f32, to: f32) {
+        self.visitor.narrow(from, to);
+    }
+}

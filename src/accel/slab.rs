@@ -23,8 +23,9 @@ use super::packet::Bundle;
 /// Half-width of the cone in units of the way along the ray's longest axis: 8ε = 16u. The test itself needs 4u.
 const CONE: f32 = 8.0 * f32::EPSILON;
 
-/// Numbers beyond this (or below its inverse) could overflow (or underflow) on their way to `t`; then no face is trusted.
-const RANGE: f32 = 1e25;
+/// Numbers beyond this (or below its inverse) could overflow (or underflow) on their way to `t`, a quotient of two of them; then no
+/// face is trusted.
+const RANGE: f32 = 1e18;
 
 /// The corners of a box, least first.
 pub(super) type Corners = [[f32; 3]; 2];

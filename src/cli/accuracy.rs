@@ -209,7 +209,7 @@ fn plan(args: &AccuracyArgs) -> Result<AccuracyPlan, Failure> {
         &args.set,
     )?;
     let mut plan = Plan {
-        scenes: args.scenes.clone(),
+        scenes: split_list(&args.scenes),
         accels,
         kernels,
         n: lab::parse_n_list(&args.n)?,

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   ●  origin: two diagonals of the box away from the target (`distance`)
-//!    \
+//!    \    (or the centre of the box, `from=centre`: as from inside a closed mesh)
 //!  a──x────b    three rays of four: a uniform point of a shared edge; every fourth: one of the edge's ends
 //! ```
 //!
@@ -50,6 +50,12 @@ pub(super) const ENTRY: RaySetEntry = RaySetEntry {
             },
             default: "2",
         },
+        ParamSpec {
+            name: "from",
+            about: "Where rays start: outside, at that distance, or at the centre of the scene's box.",
+            kind: ParamKind::Choice(&["outside", "centre"]),
+            default: "outside",
+        },
     ],
     make: |request| Ok(make(request)),
 };
@@ -74,7 +80,10 @@ fn make(request: &RayRequest) -> Rays {
         "vertex" => true,
         _ => i % ONE_VERTEX_OF == ONE_VERTEX_OF - 1,
     };
-    let distance = request.params.number("distance").unwrap_or(2.0) * diagonal(mesh);
+    let from = match request.params.text("from") {
+        "centre" => Start::Centre,
+        _ => Start::Outside(request.params.number("distance").unwrap_or(2.0) * diagonal(mesh)),
+    };
     let mut aim = |edges: &[Edge], tries: usize, checked: bool| -> Vec<Ray> {
         if edges.is_empty() {
             return Vec::new();
@@ -84,8 +93,8 @@ fn make(request: &RayRequest) -> Rays {
             tries.find_map(|_| {
                 let pick = (u64::from(random.next_u32()) * edges.len() as u64) >> 32;
                 let target = Target::of(mesh, &edges[pick as usize], at_vertex(i), &mut random);
-                let ray = target.ray(mesh, distance, &mut random);
-                (!checked || target.goes_on(&seams, mesh, &ray)).then_some(ray)
+                let ray = target.ray(mesh, from, &mut random);
+                (ray.is_valid() && (!checked || target.goes_on(&seams, mesh, &ray))).then_some(ray)
             })
         };
         (0..request.count).filter_map(one).collect()
@@ -110,6 +119,15 @@ fn make(request: &RayRequest) -> Rays {
         ));
     }
     Rays { rays, warnings }
+}
+
+/// Where rays start.
+#[derive(Clone, Copy)]
+enum Start {
+    /// So far from the target.
+    Outside(f64),
+    /// At the centre of the box.
+    Centre,
 }
 
 /// What a ray is aimed at.
@@ -138,24 +156,32 @@ impl<'a> Target<'a> {
         }
     }
 
-    /// A ray from the side that looks away from the box's centre, over this distance.
-    fn ray(&self, mesh: &Mesh, distance: f64, random: &mut Pcg32) -> Ray {
-        let away = match unit_normal(&mesh.corners(self.edge.prim)) {
-            Some(normal) => {
-                let normal = normal.as_dvec3();
-                let centre = mesh.bounds().centre().as_dvec3();
-                let inwards = normal.dot(self.point - centre) < 0.0;
-                cosine_direction(random, if inwards { -normal } else { normal })
-            }
-            None => direction(random),
+    /// A ray to it.
+    fn ray(&self, mesh: &Mesh, from: Start, random: &mut Pcg32) -> Ray {
+        let origin = match from {
+            Start::Outside(distance) => (self.point + self.away(mesh, random) * distance).as_vec3(),
+            Start::Centre => mesh.bounds().centre(),
         };
-        let origin = (self.point + away * distance).as_vec3();
+        let way = self.point - origin.as_dvec3();
         let bounds = mesh.bounds();
         let extent = (bounds.max.as_dvec3() - bounds.min.as_dvec3()).length();
+        // Infinite for a target at the centre: its direction is 0, and the ray is left out.
+        let behind = BEHIND * extent / way.length();
         Ray {
-            t_max: (1.0 + ROUNDING + BEHIND * extent / distance) as f32,
-            ..Ray::new(origin, (self.point - origin.as_dvec3()).as_vec3())
+            t_max: (1.0 + ROUNDING + behind) as f32,
+            ..Ray::new(origin, way.as_vec3())
         }
+    }
+
+    /// A direction to the side that looks away from the box's centre.
+    fn away(&self, mesh: &Mesh, random: &mut Pcg32) -> DVec3 {
+        let Some(normal) = unit_normal(&mesh.corners(self.edge.prim)) else {
+            return direction(random);
+        };
+        let normal = normal.as_dvec3();
+        let centre = mesh.bounds().centre().as_dvec3();
+        let inwards = normal.dot(self.point - centre) < 0.0;
+        cosine_direction(random, if inwards { -normal } else { normal })
     }
 
     /// Whether the surface goes on on every side of the target as seen along `ray`.
@@ -198,6 +224,18 @@ mod tests {
             to_edge.fold(f64::INFINITY, f64::min),
             to_vertex.fold(f64::INFINITY, f64::min),
         )
+    }
+
+    #[test]
+    fn rays_from_the_centre_of_a_ball_meet_it_at_vertices() {
+        let scene = crate::scene::load("shells:1,2").unwrap();
+        let rays = ray_set(&scene, "edge:at=vertex:from=centre", 200, 1).unwrap();
+        assert_eq!((rays.rays.len(), rays.warnings.len()), (200, 0));
+        let oracle = Oracle::new(&scene.mesh);
+        for ray in &rays.rays {
+            assert_eq!(ray.origin, Vec3::ZERO);
+            assert!(misses(&scene.mesh, ray).1 == 0.0 && oracle.truth(ray).is_hit());
+        }
     }
 
     #[test]

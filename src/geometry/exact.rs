@@ -197,6 +197,18 @@ impl<const N: usize> WideInt<N> {
     }
 }
 
+impl<const N: usize> From<i128> for WideInt<N> {
+    /// `N` is at least 2.
+    fn from(x: i128) -> Self {
+        let magnitude = x.unsigned_abs();
+        let mut int = Self::ZERO;
+        int.limbs[0] = magnitude as u64;
+        int.limbs[1] = (magnitude >> 64) as u64;
+        int.negative = x < 0;
+        int.trimmed(2)
+    }
+}
+
 impl<const N: usize> Neg for WideInt<N> {
     type Output = Self;
     fn neg(self) -> Self {
@@ -278,19 +290,52 @@ impl<const N: usize> Ord for WideInt<N> {
 /// A vector of exact integers of any size that a determinant of `f32` needs.
 pub type ExactVec3 = [ExactInt; 3];
 
+/// Exact integers, of whatever size.
+pub trait Integer:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
+{
+    /// `x / 2^unit`, which must be whole: `unit` at most the exponent of `x`.
+    fn of(x: f32, unit: i32) -> Self;
+    /// -1, 0 or 1.
+    fn sign(self) -> i32;
+}
+
+impl<const N: usize> Integer for WideInt<N> {
+    fn of(x: f32, unit: i32) -> Self {
+        Self::of(x, unit)
+    }
+    fn sign(self) -> i32 {
+        self.signum()
+    }
+}
+
+/// Determinants of numbers that span at most [`SMALL_SPAN`] bits fit.
+impl Integer for i128 {
+    fn of(x: f32, unit: i32) -> Self {
+        let (mantissa, exponent) = decompose(x);
+        if mantissa == 0 {
+            return 0;
+        }
+        let magnitude = Self::from(mantissa) << (exponent - unit);
+        if x < 0.0 { -magnitude } else { magnitude }
+    }
+    fn sign(self) -> i32 {
+        self.signum() as i32
+    }
+}
+
+/// Bits that numbers may span for the determinants of their differences to fit 128: 3·(40 + 1) + 3.
+pub const SMALL_SPAN: u32 = 40;
+
 /// `a − b`.
 #[must_use]
-pub fn minus<const N: usize>(a: &[WideInt<N>; 3], b: &[WideInt<N>; 3]) -> [WideInt<N>; 3] {
+pub fn minus<T: Integer>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
     [0, 1, 2].map(|i| a[i] - b[i])
 }
 
 /// The determinant of three vectors, a·(b × c).
 #[must_use]
-pub fn det<const N: usize>(
-    a: &[WideInt<N>; 3],
-    b: &[WideInt<N>; 3],
-    c: &[WideInt<N>; 3],
-) -> WideInt<N> {
+pub fn det<T: Integer>(a: &[T; 3], b: &[T; 3], c: &[T; 3]) -> T {
     a[0] * (b[1] * c[2] - b[2] * c[1])
         + a[1] * (b[2] * c[0] - b[0] * c[2])
         + a[2] * (b[0] * c[1] - b[1] * c[0])
@@ -337,6 +382,34 @@ mod tests {
         assert_eq!(span([0.0, -0.0]), 0);
         assert_eq!(span([f32::MAX, 1e-45]), 277);
         assert_eq!(span([1.0, 1.0 + f32::EPSILON]), 24);
+    }
+
+    #[test]
+    fn small_integers_say_what_wide_ones_say() {
+        let mut bits = 1_u32;
+        let mut number = || {
+            bits = bits.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+            // 24 bits of mantissa, and exponents 16 apart: 40 bits.
+            let x = f32::from_bits((bits >> 9) | 0x3f80_0000);
+            x * f32::from(1_u16 << (bits & 15)) * if bits & 16 == 0 { 1.0 } else { -1.0 }
+        };
+        for _ in 0..1000 {
+            let rows = [0; 9].map(|_| number());
+            let unit = common_exponent(rows);
+            assert!(span(rows) <= SMALL_SPAN);
+            let small = rows.map(|x| <i128 as Integer>::of(x, unit));
+            let wide = rows.map(|x| ExactInt::of(x, unit));
+            let vector = |i: usize| [small[3 * i], small[3 * i + 1], small[3 * i + 2]];
+            let wide_vector = |i: usize| [wide[3 * i], wide[3 * i + 1], wide[3 * i + 2]];
+            let d = det(&minus(&vector(0), &vector(1)), &vector(1), &vector(2));
+            let w = det(
+                &minus(&wide_vector(0), &wide_vector(1)),
+                &wide_vector(1),
+                &wide_vector(2),
+            );
+            assert_eq!(ExactInt::from(d), w);
+            assert_eq!(d.sign(), w.sign());
+        }
     }
 
     #[test]

@@ -6,7 +6,7 @@
 
 use std::cmp::Ordering;
 
-use crate::geometry::exact::{self, ExactInt, WideInt};
+use crate::geometry::exact::{self, ExactInt, Integer, WideInt};
 use crate::geometry::{DVec3, Hit, Ray, Vec3};
 use crate::kernel::error;
 use crate::scene::Mesh;
@@ -60,7 +60,7 @@ fn largest(v: DVec3) -> f64 {
 #[cold]
 pub(super) fn without_area(corners: &[Vec3; 3]) -> bool {
     let unit = exact::common_exponent(corners.iter().flat_map(Vec3::to_array));
-    let [a, b, c] = corners.map(|v| integers::<WIDE>(v, unit));
+    let [a, b, c] = corners.map(|v| integers::<WideInt<WIDE>>(v, unit));
     let (p, q) = (exact::minus(&b, &a), exact::minus(&c, &a));
     [(0, 1), (1, 2), (2, 0)]
         .iter()
@@ -68,8 +68,8 @@ pub(super) fn without_area(corners: &[Vec3; 3]) -> bool {
 }
 
 /// The components in units of 2^`unit`.
-fn integers<const N: usize>(v: Vec3, unit: i32) -> [WideInt<N>; 3] {
-    v.to_array().map(|x| WideInt::of(x, unit))
+fn integers<T: Integer>(v: Vec3, unit: i32) -> [T; 3] {
+    v.to_array().map(|x| T::of(x, unit))
 }
 
 /// A line that crosses a triangle's plane in one point.
@@ -141,18 +141,35 @@ impl Crossing {
 
     /// `t` as a fraction, of corners and origin in units of 2^`unit`.
     fn fraction<const N: usize>(&self, unit: i32) -> Fraction<N> {
-        let dir_unit = exact::common_exponent(self.dir.to_array());
-        let [a, b, c] = self.corners.map(|v| integers(v, unit));
-        let (e1, e2) = (exact::minus(&b, &a), exact::minus(&c, &a));
-        let a = exact::minus(&a, &integers(self.origin, unit));
-        let n = exact::det(&a, &e1, &e2);
-        let d = exact::det(&integers(self.dir, dir_unit), &e1, &e2);
+        // What lies below the coordinates' own unit makes their integers longer.
+        let below = (self.unit() - unit).unsigned_abs();
+        let (n, d) = if self.span() + below <= exact::SMALL_SPAN {
+            let (n, d) = self.determinants::<i128>(unit);
+            (n.into(), d.into())
+        } else {
+            self.determinants::<WideInt<N>>(unit)
+        };
         let (numerator, denominator) = if d.signum() < 0 { (-n, -d) } else { (n, d) };
         Fraction {
             numerator,
             denominator,
-            exponent: unit - dir_unit,
+            exponent: unit - self.dir_unit(),
         }
+    }
+
+    /// The exponent in which the direction is whole.
+    fn dir_unit(&self) -> i32 {
+        exact::common_exponent(self.dir.to_array())
+    }
+
+    /// N and D, of corners and origin in units of 2^`unit`.
+    fn determinants<T: Integer>(&self, unit: i32) -> (T, T) {
+        let [a, b, c] = self.corners.map(|v| integers::<T>(v, unit));
+        let (e1, e2) = (exact::minus(&b, &a), exact::minus(&c, &a));
+        let a = exact::minus(&a, &integers(self.origin, unit));
+        let n = exact::det(&a, &e1, &e2);
+        let d = exact::det(&integers(self.dir, self.dir_unit()), &e1, &e2);
+        (n, d)
     }
 
     /// Compares `t` with an end of an interval, which may be infinite.

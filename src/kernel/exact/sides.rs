@@ -9,7 +9,7 @@
 //! In `f64` nothing overflows or underflows: differences of `f32` are 0 or between 2⁻¹⁴⁹ and 2¹²⁹, so products of four
 //! lie far within the range.
 
-use crate::geometry::exact::{self, WideInt};
+use crate::geometry::exact::{self, Integer, WideInt};
 use crate::geometry::{DVec3, Vec3};
 use crate::kernel::shear;
 
@@ -124,16 +124,18 @@ fn exact_signs(sides: &mut Sides, origin: Vec3, dir: Vec3, corners: &[Vec3; 3]) 
     let coordinates = || places.iter().flat_map(Vec3::to_array);
     let span = exact::span(coordinates()).max(exact::span(dir.to_array()));
     let unit = exact::common_exponent(coordinates());
-    if span <= NARROW_SPAN {
-        signs_on_integers::<NARROW>(sides, dir, &places, unit);
+    if span <= exact::SMALL_SPAN {
+        signs_on_integers::<i128>(sides, dir, &places, unit);
+    } else if span <= NARROW_SPAN {
+        signs_on_integers::<WideInt<NARROW>>(sides, dir, &places, unit);
     } else {
-        signs_on_integers::<WIDE>(sides, dir, &places, unit);
+        signs_on_integers::<WideInt<WIDE>>(sides, dir, &places, unit);
     }
 }
 
 /// `places`: the origin and the corners, whole in units of 2^`unit`.
-fn signs_on_integers<const N: usize>(sides: &mut Sides, dir: Vec3, places: &[Vec3; 4], unit: i32) {
-    let of = |v: Vec3, unit| -> [WideInt<N>; 3] { v.to_array().map(|x| WideInt::of(x, unit)) };
+fn signs_on_integers<T: Integer>(sides: &mut Sides, dir: Vec3, places: &[Vec3; 4], unit: i32) {
+    let of = |v: Vec3, unit| v.to_array().map(|x| T::of(x, unit));
     let d = of(dir, exact::common_exponent(dir.to_array()));
     let [origin, corners @ ..] = places.map(|v| of(v, unit));
     let [a, b, c] = corners.map(|v| exact::minus(&v, &origin));
@@ -142,7 +144,7 @@ fn signs_on_integers<const N: usize>(sides: &mut Sides, dir: Vec3, places: &[Vec
     let factor = if z > 0.0 { 1 } else { -1 };
     for (sign, (p, q)) in sides.signs.iter_mut().zip([(&c, &b), (&a, &c), (&b, &a)]) {
         if sign.is_none() {
-            *sign = Some(factor * exact::det(&d, p, q).signum());
+            *sign = Some(factor * exact::det(&d, p, q).sign());
         }
     }
 }

@@ -7,8 +7,8 @@ use raylab::accel;
 use raylab::kernel;
 use raylab::lab::{Budget, Control, Event, NRule, Plan, sweep_from};
 use raylab::report::{
-    Accuracy, Bundle, ErrorSpread, Places, Provenance, Rate, Report, Run, SCHEMA_JSON, SelfHits,
-    StartRule,
+    Accuracy, Bundle, ErrorSpread, Fallbacks, Places, Provenance, Rate, Report, Run, SCHEMA_JSON,
+    SelfHits, StartRule,
 };
 use serde_json::{Value, json};
 
@@ -135,6 +135,7 @@ fn a_report_with_measured_accuracy_fits_the_schema() {
         self_hits: Some(StartRule::ALL.map(|rule| SelfHits { rule, rate })),
         vertex_rotation: Some(rate),
         translation: Some(rate),
+        fallbacks: Some(Fallbacks::default()),
         ..Accuracy::default()
     });
     report.judged = Some(Places {

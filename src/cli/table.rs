@@ -1,7 +1,7 @@
 //! Tables for people.
 
 use crate::report::series::{accel_label, kernel_label};
-use crate::report::{Accuracy, ErrorSpread, Rate, Run};
+use crate::report::{Accuracy, ErrorSpread, Fallbacks, Rate, Run};
 
 /// One row a run: configuration, speed with its interval, work a ray, build, memory, and whether the answers are right.
 pub fn runs(runs: &[Run]) -> String {
@@ -111,7 +111,8 @@ fn method(run: &Run, found: &Accuracy) -> [String; 5] {
 }
 
 /// One row a judged run: how far right hits are off, how often secondary rays meet the triangle they leave, and how
-/// often answers change with what means nothing; rates in percent with their upper 95 % bounds.
+/// often answers change with what means nothing; rates in percent with their upper 95 % bounds. Of the kernel `exact` also
+/// how many of its tests `f32` could not decide.
 pub fn errors(runs: &[Run]) -> String {
     let header = [
         "scene",
@@ -131,6 +132,8 @@ pub fn errors(runs: &[Run]) -> String {
         "bound",
         "rotated %",
         "moved %",
+        "in f64 %",
+        "on integers %",
     ];
     let sides = std::array::from_fn(|column| match column {
         0..=4 => Side::Left,
@@ -142,13 +145,17 @@ pub fn errors(runs: &[Run]) -> String {
 }
 
 /// The cells of a judged run; `None` where it was not judged.
-fn row_of_errors(run: &Run) -> Option<[String; 17]> {
+fn row_of_errors(run: &Run) -> Option<[String; 19]> {
     let found = run.accuracy?;
     let [scene, place, rays, accel, kernel] = method(run, &found);
     let error = |spread: Option<ErrorSpread>, figure: fn(ErrorSpread) -> f64| {
         spread.map_or_else(dash, |s| significant(figure(s)))
     };
     let rate = |rate: Option<Rate>| rate.map_or_else(dash, percent);
+    let of_tests = |count: fn(Fallbacks) -> u64| {
+        let share = |f: Fallbacks| 100.0 * count(f) as f64 / f.tests.max(1) as f64;
+        found.fallbacks.map_or_else(dash, |f| significant(share(f)))
+    };
     let start = |rule: usize| rate(found.self_hits.map(|rules| rules[rule].rate));
     Some([
         scene,
@@ -168,6 +175,8 @@ fn row_of_errors(run: &Run) -> Option<[String; 17]> {
         start(4),
         rate(found.vertex_rotation),
         rate(found.translation),
+        of_tests(|f| f.f64),
+        of_tests(|f| f.integers),
     ])
 }
 

@@ -38,9 +38,9 @@ mod subset;
 mod sweep;
 
 pub use accuracy::{
-    Accuracy, AccuracyBounds, AccuracyEvent, AccuracyPlan, AccuracyRecord, ErrorSpread, Judging,
-    Place, PlacedRun, Rate, SelfHits, StartRule, accuracy, accuracy_from, first_wrong, placed,
-    placed_rays,
+    Accuracy, AccuracyBounds, AccuracyEvent, AccuracyPlan, AccuracyRecord, ErrorSpread, Fallbacks,
+    Judging, Place, PlacedRun, Rate, SelfHits, StartRule, accuracy, accuracy_from, first_wrong,
+    placed, placed_rays,
 };
 pub use control::Control;
 pub use error::LabError;

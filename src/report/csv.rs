@@ -4,7 +4,7 @@ use crate::accel::StructureStats;
 use crate::lab::PerRay;
 
 use super::series::{accel_label, kernel_label};
-use super::{Accuracy, ErrorSpread, Rate, Report, Run};
+use super::{Accuracy, ErrorSpread, Fallbacks, Rate, Report, Run};
 
 /// Name of a column and what a run has there.
 type Column = (&'static str, fn(&Run) -> String);
@@ -128,6 +128,12 @@ const COLUMNS: &[Column] = &[
         judged(r, |a| share(a.vertex_rotation))
     }),
     ("translation", |r| judged(r, |a| share(a.translation))),
+    ("decided_in_f64", |r| {
+        judged(r, |a| of_tests(a.fallbacks, |f| f.f64))
+    }),
+    ("decided_on_integers", |r| {
+        judged(r, |a| of_tests(a.fallbacks, |f| f.integers))
+    }),
     ("warnings", |r| r.warnings.join("; ")),
 ];
 
@@ -165,6 +171,11 @@ fn spread(spread: Option<ErrorSpread>, figure: fn(&ErrorSpread) -> f64) -> Strin
 /// The rate of self-hits by the rule of this index.
 fn self_hits(accuracy: &Accuracy, rule: usize) -> String {
     share(accuracy.self_hits.map(|rules| rules[rule].rate))
+}
+
+fn of_tests(fallbacks: Option<Fallbacks>, count: fn(Fallbacks) -> u64) -> String {
+    let share = |f: Fallbacks| real(count(f) as f64 / f.tests.max(1) as f64);
+    fallbacks.map(share).unwrap_or_default()
 }
 
 fn share(rate: Option<Rate>) -> String {

@@ -20,7 +20,9 @@ pub mod series;
 pub mod stability;
 mod table;
 
-pub use crate::lab::{Accuracy, AccuracyBounds, ErrorSpread, Place, Rate, SelfHits, StartRule};
+pub use crate::lab::{
+    Accuracy, AccuracyBounds, ErrorSpread, Fallbacks, Place, Rate, SelfHits, StartRule,
+};
 pub use bundle::Bundle;
 pub use error::ReportError;
 pub use export::{ExportError, FORMATS, FormatEntry, export};

@@ -87,7 +87,7 @@ pub struct Provenance {
     pub cores: usize,
     /// Cache sizes in bytes: L1 data, L2, L3, as far as known.
     pub caches: Vec<u64>,
-    /// Instruction set that the traversals use.
+    /// Instruction set that traversals in lanes use: `avx512`, `avx2` or `portable`.
     pub instruction_set: String,
     /// Operating system.
     pub os: String,

@@ -5,6 +5,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use sysinfo::{CpuRefreshKind, RefreshKind, System};
 
+use crate::geometry::lanes::InstructionSet;
 use crate::lab::Plan;
 use crate::scene::{self, SceneError};
 
@@ -32,8 +33,7 @@ impl Provenance {
             cpu: cpu_model(),
             cores: crate::lab::cores(),
             caches: caches(Path::new("/sys/devices/system/cpu/cpu0/cache")),
-            // Every traversal is scalar so far; the compiler takes the target's baseline.
-            instruction_set: format!("scalar, {} baseline", std::env::consts::ARCH),
+            instruction_set: InstructionSet::best().name().to_owned(),
             os: System::long_os_version().unwrap_or_else(|_| std::env::consts::OS.to_owned()),
             load: System::load_average().map_or(-1.0, |load| load.one),
             date: rfc3339(SystemTime::now()),

@@ -48,9 +48,12 @@ use crossing::Crossing;
 #[derive(Debug, Clone, Copy)]
 pub struct Exact;
 
+/// Its name.
+pub const NAME: &str = "exact";
+
 impl Exact {
     pub(super) const ENTRY: KernelEntry = KernelEntry {
-        name: "exact",
+        name: NAME,
         about: "Never wrong: filters in f32 and f64 with proven bounds decide nearly every test, integers the rest.",
         paper: "Shewchuk 1997, Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates",
         watertight: true,

@@ -23,6 +23,8 @@
 //! **Known bias.** What is judged is kernel and accelerator together; with an accelerator that obeys its rule it is the
 //! kernel, except that a phantom outside its triangle's cell may be met by one structure and not by another.
 
+#![doc = include_str!("figures.md")]
+
 mod experiment;
 mod first_wrong;
 pub(in crate::lab) mod judge;
@@ -37,7 +39,7 @@ pub(super) use judge::Truths;
 pub use experiment::{accuracy, accuracy_from};
 pub use first_wrong::first_wrong;
 pub use place::{Place, rays as placed_rays, scene as placed};
-pub use record::{Accuracy, AccuracyBounds, ErrorSpread, Rate, SelfHits};
+pub use record::{Accuracy, AccuracyBounds, ErrorSpread, Fallbacks, Rate, SelfHits};
 pub use starts::StartRule;
 
 use super::{LabError, Plan, RunConfig, RunRecord};

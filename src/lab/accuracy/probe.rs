@@ -10,6 +10,9 @@
 //!   moved back. All differences of coordinates are the same in both, so a kernel that works relative to the ray gives
 //!   the same answers.
 //!
+//! - **Fallbacks.** Of the tests that `exact` makes: how many its filter in `f32` leaves to `f64`, and how many that leaves
+//!   to integers.
+//!
 //! *Decided otherwise*: another triangle, or a hit instead of a miss. All of this is asked of a seeded sample of the
 //! rays, in the default accelerator: an accelerator never changes a right answer, so these are figures of the kernel.
 
@@ -19,16 +22,20 @@ use rayon::prelude::*;
 
 use crate::accel::{self, Accelerator};
 use crate::geometry::{Hit, Ray, Vec3, unit_normal};
+use crate::kernel::exact::{self, Stage};
 use crate::lab::subset::stratified;
 use crate::registry::Choice;
 use crate::scene::{Mesh, Scene};
 use crate::trace::{self, BATCH, cosine_direction, generator};
 
 use super::place;
-use super::{Accuracy, Place, Rate, SelfHits, StartRule};
+use super::{Accuracy, Fallbacks, Place, Rate, SelfHits, StartRule};
 
 /// Most rays that are asked: a rate of 1 in 20,000 is still seen.
 const PROBED: usize = 1 << 16;
+
+/// Most rays whose tests are looked at one by one.
+const WATCHED: usize = 1 << 14;
 
 /// Rays and scenes that all kernels of a course are probed with.
 pub(super) struct Probes {
@@ -53,6 +60,7 @@ pub(super) struct Probed {
     self_hits: [SelfHits; StartRule::ALL.len()],
     vertex_rotation: Rate,
     translation: Option<Rate>,
+    fallbacks: Option<Fallbacks>,
 }
 
 impl Probed {
@@ -61,6 +69,7 @@ impl Probed {
         accuracy.self_hits = Some(self.self_hits);
         accuracy.vertex_rotation = Some(self.vertex_rotation);
         accuracy.translation = self.translation;
+        accuracy.fallbacks = self.fallbacks;
     }
 }
 
@@ -107,7 +116,31 @@ impl Probes {
             }),
             vertex_rotation: otherwise,
             translation,
+            fallbacks: (kernel.name == exact::NAME).then(|| self.fallbacks(&*built)),
         })
+    }
+
+    fn fallbacks(&self, built: &dyn Accelerator) -> Fallbacks {
+        let every = self.rays.len().div_ceil(WATCHED).max(1);
+        let of_ray = |ray: &Ray| {
+            let visits = built.inspect(ray).visits;
+            let tests = visits.iter().flat_map(|visit| &visit.tests);
+            tests.fold(Fallbacks::default(), |sum, test| {
+                let stage = exact::stage(ray, &self.mesh.corners(test.prim));
+                Fallbacks {
+                    tests: sum.tests + 1,
+                    f64: sum.f64 + u64::from(stage == Stage::F64),
+                    integers: sum.integers + u64::from(stage == Stage::Integers),
+                }
+            })
+        };
+        let rays = self.rays.par_iter().step_by(every).filter(|r| r.is_valid());
+        rays.map(of_ray)
+            .reduce(Fallbacks::default, |a, b| Fallbacks {
+                tests: a.tests + b.tests,
+                f64: a.f64 + b.f64,
+                integers: a.integers + b.integers,
+            })
     }
 
     fn self_hits(&self, built: &dyn Accelerator, hits: &[Hit], rule: StartRule) -> Rate {
@@ -236,6 +269,27 @@ mod tests {
                 "{rule:?}"
             );
         }
+    }
+
+    #[test]
+    fn rays_exactly_through_edges_are_decided_on_integers_and_others_are_not() {
+        assert!(probed(0.0, "woop").fallbacks.is_none());
+        let share = |offset| {
+            let Fallbacks {
+                tests,
+                f64,
+                integers,
+            } = probed(offset, "exact").fallbacks.unwrap();
+            assert!(tests > 4000);
+            [f64, integers].map(|count| count as f64 / tests as f64)
+        };
+        let ([near_f64, near_integers], [_, far_integers]) = (share(0.0), share(1e5));
+        // Beside the edges first; far away corners and origins are on one raster, and rays pass exactly through edges.
+        assert!(
+            near_f64 > 0.1 && near_integers < 0.05,
+            "{near_f64}, {near_integers}"
+        );
+        assert!(far_integers > 0.1, "{far_integers}");
     }
 
     #[test]

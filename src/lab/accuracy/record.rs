@@ -52,6 +52,9 @@ pub struct Accuracy {
     /// Rays that are decided otherwise in an equal scene elsewhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub translation: Option<Rate>,
+    /// How often tests of the kernel `exact` needed more than `f32`; absent for other kernels.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fallbacks: Option<Fallbacks>,
 }
 
 fn one() -> f64 {
@@ -78,6 +81,7 @@ impl Default for Accuracy {
             self_hits: None,
             vertex_rotation: None,
             translation: None,
+            fallbacks: None,
         }
     }
 }
@@ -123,6 +127,17 @@ impl Rate {
     pub fn share(&self) -> f64 {
         self.seen as f64 / self.rays.max(1) as f64
     }
+}
+
+/// How many tests of the kernel `exact` its filter in `f32` could not decide.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Fallbacks {
+    /// Tests of a sample of the rays, in the default accelerator.
+    pub tests: u64,
+    /// Of these, decided in `f64`.
+    pub f64: u64,
+    /// Of these, decided on integers.
+    pub integers: u64,
 }
 
 /// How often secondary rays met the triangle that they left.

@@ -91,7 +91,8 @@ impl<const EPS: bool> Kernel for MollerTrumbore<EPS> {
         }
     }
 
-    const PACKETS: bool = true;
+    // A control need not be fast, and is compiled sooner.
+    const PACKETS: bool = !EPS;
 
     #[inline(always)]
     fn corners<L: Lane<8>>(block: &Packed<8>) -> [LaneVec3<L>; 3] {

@@ -80,7 +80,8 @@ impl<const FUSED: bool> Kernel for Woop<FUSED> {
         block.lane(lane)
     }
 
-    const PACKETS: bool = true;
+    // A control need not be fast, and is compiled sooner.
+    const PACKETS: bool = !FUSED;
 
     #[inline(always)]
     fn corners<L: Lane<8>>(block: &Corners<8>) -> [LaneVec3<L>; 3] {

@@ -16,7 +16,7 @@ use crate::accel::{AcceleratorEntry, BuildError, BuildRequest, StructureStats};
 use crate::geometry::{Aabb, Ray, Vec3};
 
 use super::tested::{Next, Tree, finish};
-use super::{Peer, forward};
+use super::{Peer, forward, refuse_enormous};
 
 pub(in crate::accel) const ENTRY: AcceleratorEntry = AcceleratorEntry {
     name: "bvh-crate",
@@ -28,9 +28,6 @@ pub(in crate::accel) const ENTRY: AcceleratorEntry = AcceleratorEntry {
     peer: Some(Peer::COMPILED_IN),
     build: |request| finish(Tree3::build(request)?, request),
 };
-
-/// Greatest coordinate that its build can hold: the areas of larger boxes overflow, on which it panics.
-const FARTHEST: f32 = 1e18;
 
 /// A triangle as the crate sees it: a box.
 #[derive(Debug, Clone, Copy)]
@@ -70,12 +67,7 @@ struct Tree3 {
 impl Tree3 {
     fn build(request: &BuildRequest) -> Result<Self, BuildError> {
         let mesh = request.mesh;
-        if mesh.bounds().max_abs() > FARTHEST && !mesh.is_empty() {
-            return Err(BuildError::Unfit {
-                accel: ENTRY.name,
-                why: format!("coordinates beyond {FARTHEST:e}, whose areas overflow in it"),
-            });
-        }
+        refuse_enormous(mesh, ENTRY.name)?;
         let mut shapes: Vec<Shape> = (0..mesh.len() as u32)
             .map(|prim| {
                 let bounds = mesh.triangle_bounds(prim);

@@ -25,10 +25,26 @@ use serde::Serialize;
 
 use crate::geometry::{Aabb, Ray};
 use crate::registry::Params;
+use crate::scene::Mesh;
+
+use super::BuildError;
 
 pub(super) use bvh_crate::ENTRY as BVH_CRATE;
 pub(super) use embree::ENTRY as EMBREE;
 pub(super) use obvhs::ENTRY as OBVHS;
+
+/// Greatest coordinate for builders whose areas overflow beyond, so that they panic or build trees that lead nowhere.
+const FARTHEST: f32 = 1e18;
+
+fn refuse_enormous(mesh: &Mesh, accel: &'static str) -> Result<(), BuildError> {
+    if mesh.is_empty() || mesh.bounds().max_abs() <= FARTHEST {
+        return Ok(());
+    }
+    Err(BuildError::Unfit {
+        accel,
+        why: format!("coordinates beyond {FARTHEST:e}, whose areas overflow in it"),
+    })
+}
 
 /// What sets the structure of another library apart from raylab's own.
 #[derive(Debug, Clone, Copy)]

@@ -18,13 +18,13 @@ use ::obvhs::triangle::Triangle;
 use ::obvhs::{BvhBuildParams, traverse};
 use glam::{UVec2, Vec3A};
 
-use crate::accel::{AcceleratorEntry, BuildRequest, StructureStats};
+use crate::accel::{AcceleratorEntry, BuildError, BuildRequest, StructureStats};
 use crate::geometry::{Aabb, Ray};
 use crate::registry::{ParamKind, ParamSpec, Params};
 use crate::scene::Mesh;
 
 use super::tested::{Next, Tree, finish};
-use super::{Peer, forward};
+use super::{Peer, forward, refuse_enormous};
 
 pub(in crate::accel) const ENTRY: AcceleratorEntry = AcceleratorEntry {
     name: "obvhs",
@@ -49,7 +49,7 @@ pub(in crate::accel) const ENTRY: AcceleratorEntry = AcceleratorEntry {
     resolution: None,
     peer: Some(Peer::COMPILED_IN),
     build: |request| match request.params.text("layout") {
-        "cwbvh" => finish(Wide::build(request), request),
+        "cwbvh" => finish(Wide::build(request)?, request),
         _ => finish(Binary::build(request), request),
     },
 };
@@ -184,18 +184,19 @@ struct Wide {
 }
 
 impl Wide {
-    fn build(request: &BuildRequest) -> Self {
+    fn build(request: &BuildRequest) -> Result<Self, BuildError> {
         let mesh = request.mesh;
+        refuse_enormous(mesh, ENTRY.name)?;
         let bvh = if mesh.is_empty() {
             CwBvh::default()
         } else {
             let mut time = Duration::ZERO;
             build_cwbvh_from_tris(&triangles(mesh), preset(request.params), &mut time)
         };
-        Self {
+        Ok(Self {
             bvh,
             bounds: mesh.bounds(),
-        }
+        })
     }
 }
 

@@ -125,12 +125,7 @@ impl Traced {
                 } else if found.geometry == INVALID {
                     Hit::MISS
                 } else {
-                    Hit {
-                        t: self.back(&rays[i], found.t_far),
-                        u: found.u,
-                        v: found.v,
-                        prim: found.prim,
-                    }
+                    self.answer(&rays[i], [found.t_far, found.u, found.v], found.prim)
                 };
                 done(i, hit);
             });
@@ -158,21 +153,22 @@ impl Traced {
             } else if packet.geometry[lane] == INVALID {
                 Hit::MISS
             } else {
-                Hit {
-                    t: self.back(ray, packet.t_far[lane]),
-                    u: packet.u[lane],
-                    v: packet.v[lane],
-                    prim: packet.prim[lane],
-                }
+                let found = [packet.t_far[lane], packet.u[lane], packet.v[lane]];
+                self.answer(ray, found, packet.prim[lane])
             };
             done(lane, hit);
         }
     }
 
-    /// `t` of the given ray where the ray that was moved forward has `t`.
+    /// What was found on `ray` moved forward, on the ray itself. A t that is no number is no hit.
     #[inline(always)]
-    fn back(&self, ray: &Ray, t: f32) -> f32 {
-        t + forward(ray, &self.bounds).1
+    fn answer(&self, ray: &Ray, [t, u, v]: [f32; 3], prim: u32) -> Hit {
+        let t = t + forward(ray, &self.bounds).1;
+        if t.is_nan() {
+            Hit::MISS
+        } else {
+            Hit { t, u, v, prim }
+        }
     }
 }
 

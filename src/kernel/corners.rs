@@ -13,6 +13,15 @@ impl<const W: usize> Corners<W> {
         Self::of(|lane| super::with_area(corners(lane)))
     }
 
+    /// Those that `corners(lane)` gives; a triangle without area is made NaN: edge functions of one point are 0, which the
+    /// shear takes for a ray on an edge and looks at again in `f64`, or rounding errors where they are fused.
+    pub(super) fn with_area_or_nan(corners: impl Fn(usize) -> [Vec3; 3]) -> Self {
+        Self::of(|lane| match super::with_area(corners(lane)) {
+            [a, b, c] if a == b && b == c => [Vec3::NAN; 3],
+            corners => corners,
+        })
+    }
+
     /// Those that `corners(lane)` gives, as they are.
     pub(super) fn of(corners: impl Fn(usize) -> [Vec3; 3]) -> Self {
         let corners: [_; W] = std::array::from_fn(corners);

@@ -77,7 +77,7 @@ impl Kernel for Pbrt {
     type Prepared<const W: usize, L: Lane<W>> = Prepared<L>;
 
     fn pack<const W: usize>(&self, corners: impl Fn(usize) -> [Vec3; 3]) -> Corners<W> {
-        Corners::with_area(corners)
+        Corners::with_area_or_nan(corners)
     }
 
     #[inline(always)]

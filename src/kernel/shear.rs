@@ -152,8 +152,8 @@ pub(super) fn test<const W: usize, L: Lane<W>, E: Edge>(
         w = edge_exact(on_edge, w, b.x, a.y, b.y, a.x);
     }
     let det = u + v + w;
-    // A NaN passes all of these and gives a NaN t.
-    let mask = !apart::<W, L>(u, v, w) & !det.eq(zero);
+    // Not so written that NaN passes: it would only give a NaN t.
+    let mask = !apart::<W, L>(u, v, w) & (det.lt(zero) | det.gt(zero));
     if !mask.any() {
         return None;
     }

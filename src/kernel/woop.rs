@@ -65,14 +65,7 @@ impl<const FUSED: bool> Kernel for Woop<FUSED> {
     type Prepared<const W: usize, L: Lane<W>> = Prepared<L>;
 
     fn pack<const W: usize>(&self, corners: impl Fn(usize) -> [Vec3; 3]) -> Corners<W> {
-        if !FUSED {
-            return Corners::with_area(corners);
-        }
-        // Fused edge functions of one point are rounding errors, not 0. NaN gives a NaN t, which nobody accepts.
-        Corners::of(|lane| match super::with_area(corners(lane)) {
-            [a, b, c] if a == b && b == c => [Vec3::NAN; 3],
-            corners => corners,
-        })
+        Corners::with_area_or_nan(corners)
     }
 
     #[inline(always)]

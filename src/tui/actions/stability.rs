@@ -66,7 +66,10 @@ fn wanted(state: &mut State, export: bool) -> Vec<Effect> {
 /// Takes in a failure that was made again.
 pub(in crate::tui) fn reproduced(state: &mut State, news: Reproduced) {
     match news {
-        Reproduced::Found(least) => inspect(state, *least),
+        Reproduced::Found(least) => {
+            state.notice = None;
+            inspect(state, *least);
+        }
         Reproduced::Written(said) => state.say(said),
         Reproduced::Failed(why) => state.warn(why),
     }

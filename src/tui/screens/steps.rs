@@ -209,7 +209,7 @@ fn verdict(inspection: &Inspection) -> String {
     let truth = &inspection.truth;
     match (inspection.right, truth.t, truth.prims.first()) {
         (true, ..) => "RIGHT".to_owned(),
-        (false, Some(t), Some(prim)) => format!("WRONG, truth: triangle {prim} at t = {t}"),
+        (false, Some(t), Some(prim)) => format!("WRONG, truth: triangle {prim} at t = {t:.6}"),
         (false, ..) => "WRONG, truth: a miss".to_owned(),
     }
 }

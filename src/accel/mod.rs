@@ -36,6 +36,8 @@ mod bvh_wide;
 mod clip;
 mod exhibit;
 mod grid;
+mod grid_skip;
+mod grid_two_level;
 mod items;
 mod kd_tree;
 mod packet;
@@ -44,6 +46,7 @@ mod peers;
 mod query;
 mod record;
 mod sah;
+mod share;
 mod slab;
 mod stack;
 #[cfg(test)]
@@ -293,6 +296,8 @@ impl AcceleratorEntry {
 pub static ACCELERATORS: &[AcceleratorEntry] = &[
     brute::ENTRY,
     grid::ENTRY,
+    grid_skip::ENTRY,
+    grid_two_level::ENTRY,
     kd_tree::ENTRY,
     bvh::ENTRY,
     bvh_wide::ENTRY,

@@ -13,7 +13,7 @@ use crate::geometry::{Aabb, DVec3};
 
 /// How n becomes cells along x, y and z.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Shape {
+pub(in crate::accel) enum Shape {
     /// n on every axis.
     N3,
     /// n on the longest axis, the others so that cells are as cubic as possible.
@@ -34,7 +34,7 @@ impl Shape {
 
 /// A range of cells, both ends inclusive, on each axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Block {
+pub(in crate::accel) struct Block {
     pub first: [u32; 3],
     pub last: [u32; 3],
 }
@@ -61,7 +61,7 @@ impl Block {
 
 /// The cells of a grid.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Lattice {
+pub(in crate::accel) struct Lattice {
     /// Least corner, b(0).
     pub lo: [f64; 3],
     /// Greatest corner, b(n).

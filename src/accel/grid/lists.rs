@@ -32,7 +32,7 @@ const DIRECT_CELLS: u64 = 4;
 
 /// The triangles that each cell lists.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Lists {
+pub(in crate::accel) struct Lists {
     pub offsets: Vec<u32>,
     pub prims: Vec<u32>,
 }
@@ -80,6 +80,32 @@ impl Lists {
         Some(lists)
     }
 
+    /// Lists these triangles of `mesh`, which ascend, in the cells they touch by `T`, those that reach beyond the lattice in
+    /// its last cells; `None` if these are more than `most` references.
+    pub fn of_some<T: Overlap>(
+        lattice: &Lattice,
+        mesh: &Mesh,
+        some: &[u32],
+        most: usize,
+    ) -> Option<Self> {
+        let mut found = Vec::with_capacity(2 * some.len());
+        for &prim in some {
+            each_cell::<T>(lattice, mesh, prim, &mut |cell| {
+                found.push(Pair { cell, prim });
+            });
+            if found.len() > most {
+                return None;
+            }
+        }
+        let mut lists = Self {
+            offsets: vec![0; lattice.len() as usize + 1],
+            prims: vec![0; found.len()],
+        };
+        let pairs = std::iter::once(found.as_slice());
+        fill(&mut lists.offsets, 0, 0, &mut lists.prims, pairs);
+        Some(lists)
+    }
+
     /// What a cell lists.
     #[inline(always)]
     pub fn of(&self, cell: usize) -> &[u32] {
@@ -93,7 +119,7 @@ impl Lists {
 }
 
 /// Bytes of lists with this many cells and references; the greatest number where that is more.
-pub(super) fn bytes(cells: u64, references: u64) -> u64 {
+pub(in crate::accel) fn bytes(cells: u64, references: u64) -> u64 {
     let entries = cells.saturating_add(1).saturating_add(references);
     entries.saturating_mul(size_of::<u32>() as u64)
 }

@@ -30,15 +30,15 @@ use super::{
 };
 
 mod exhibits;
-mod lattice;
-mod lists;
+pub(super) mod lattice;
+pub(super) mod lists;
 mod mailbox;
-mod overlap;
-mod predict;
+pub(super) mod overlap;
+pub(super) mod predict;
 #[cfg(test)]
 mod tests;
-mod validate;
-mod walk;
+pub(super) mod validate;
+pub(super) mod walk;
 
 pub(super) use exhibits::{F32_OVERLAP, INCREMENTAL, INSIDE_ONLY};
 use lattice::{Lattice, Shape};
@@ -53,24 +53,14 @@ pub(super) const ENTRY: AcceleratorEntry = AcceleratorEntry {
     about: "Uniform grid over the smallest box; cells list the triangles that touch them.",
     paper: "Fujimoto et al. 1986, ARTS; Amanatides and Woo 1987; Lagae and Dutré 2008",
     params: &[
-        ParamSpec {
-            name: "overlap",
-            about: "How a triangle is found to touch a cell: vertices, edges and diagonals; separating axes; or boxes.",
-            kind: ParamKind::Choice(&["three-test", "sat", "bbox"]),
-            default: "three-test",
-        },
+        Settings::OVERLAP,
         ParamSpec {
             name: "mailbox",
             about: "Whether a triangle listed in several cells is tested once a ray.",
             kind: ParamKind::Choice(&["on", "off"]),
             default: "on",
         },
-        ParamSpec {
-            name: "shape",
-            about: "n cells on every axis, or n on the longest and cells as cubic as possible.",
-            kind: ParamKind::Choice(&["n3", "cubic"]),
-            default: "n3",
-        },
+        Settings::SHAPE,
     ],
     control: false,
     resolution: Some(Resolution {
@@ -83,7 +73,7 @@ pub(super) const ENTRY: AcceleratorEntry = AcceleratorEntry {
 
 /// How a triangle is found to touch a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum OverlapTest {
+pub(super) enum OverlapTest {
     Three,
     Separating,
     /// A mistake that is exhibited.
@@ -93,14 +83,36 @@ enum OverlapTest {
 
 /// The parameters, read.
 #[derive(Debug, Clone, Copy)]
-struct Settings {
+pub(super) struct Settings {
     overlap: OverlapTest,
     mailbox: bool,
-    shape: Shape,
+    pub(super) shape: Shape,
 }
 
 impl Settings {
-    fn read(params: &Params) -> Self {
+    /// The parameter `overlap`.
+    pub(super) const OVERLAP: ParamSpec = ParamSpec {
+        name: "overlap",
+        about: "How a triangle is found to touch a cell: vertices, edges and diagonals; separating axes; or boxes.",
+        kind: ParamKind::Choice(&["three-test", "sat", "bbox"]),
+        default: "three-test",
+    };
+
+    /// The parameter `shape`.
+    pub(super) const SHAPE: ParamSpec = ParamSpec {
+        name: "shape",
+        about: "n cells on every axis, or n on the longest and cells as cubic as possible.",
+        kind: ParamKind::Choice(&["n3", "cubic"]),
+        default: "n3",
+    };
+
+    /// As [`Settings::SHAPE`] for grids that need not be told to be cubic: long cells of flat scenes are met by many rays.
+    pub(super) const CUBIC_SHAPE: ParamSpec = ParamSpec {
+        default: "cubic",
+        ..Self::SHAPE
+    };
+
+    pub(super) fn read(params: &Params) -> Self {
         Self {
             overlap: match params.text("overlap") {
                 "sat" => OverlapTest::Separating,
@@ -112,6 +124,38 @@ impl Settings {
                 "cubic" => Shape::Cubic,
                 _ => Shape::N3,
             },
+        }
+    }
+
+    /// Lists the triangles of `mesh` in the cells of `lattice`; `None` if these are more than `most` references.
+    pub(super) fn lists(self, lattice: &Lattice, mesh: &Mesh, most: u64) -> Option<Lists> {
+        match self.overlap {
+            OverlapTest::Three => Lists::build::<ThreeTest>(lattice, mesh, most),
+            OverlapTest::Separating => Lists::build::<Separating>(lattice, mesh, most),
+            OverlapTest::SingleSeparating => {
+                let bare = Lattice {
+                    pad: 0.0,
+                    ..*lattice
+                };
+                Lists::build::<SingleSeparating>(&bare, mesh, most)
+            }
+            OverlapTest::Boxes => Lists::build::<Boxes>(lattice, mesh, most),
+        }
+    }
+
+    /// Lists some triangles of `mesh`, whose indices ascend, in the cells of `lattice`; `None` if these are more than `most`
+    /// references.
+    pub(super) fn lists_of(
+        self,
+        lattice: &Lattice,
+        mesh: &Mesh,
+        some: &[u32],
+        most: usize,
+    ) -> Option<Lists> {
+        match self.overlap {
+            OverlapTest::Separating => Lists::of_some::<Separating>(lattice, mesh, some, most),
+            OverlapTest::Boxes => Lists::of_some::<Boxes>(lattice, mesh, some, most),
+            _ => Lists::of_some::<ThreeTest>(lattice, mesh, some, most),
         }
     }
 
@@ -160,19 +204,7 @@ impl<M> Grid<M> {
         }
         let lattice = Lattice::new(mesh.bounds(), model.dims(n));
         let most = (limit - lists::bytes(lattice.len(), 0).min(limit)) / size_of::<u32>() as u64;
-        let lists = match settings.overlap {
-            OverlapTest::Three => Lists::build::<ThreeTest>(&lattice, mesh, most),
-            OverlapTest::Separating => Lists::build::<Separating>(&lattice, mesh, most),
-            OverlapTest::SingleSeparating => {
-                let bare = Lattice {
-                    pad: 0.0,
-                    ..lattice
-                };
-                Lists::build::<SingleSeparating>(&bare, mesh, most)
-            }
-            OverlapTest::Boxes => Lists::build::<Boxes>(&lattice, mesh, most),
-        };
-        match lists {
+        match settings.lists(&lattice, mesh, most) {
             Some(lists) => Ok(Self {
                 lattice,
                 lists,

@@ -51,7 +51,7 @@ const AUTO_BYTES: [u64; 3] = [64 << 20, 4 << 10, 1 << 30];
 
 /// The sums over all triangles that the model needs.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Model {
+pub(in crate::accel) struct Model {
     settings: Settings,
     triangles: f64,
     extent: DVec3,
@@ -134,14 +134,22 @@ impl Model {
             + planes.element_product() * self.volume
     }
 
+    /// Number of triangles.
+    pub fn triangles(&self) -> f64 {
+        self.triangles
+    }
+
+    /// Cells at `n`.
+    pub fn cells(&self, n: u32) -> u64 {
+        // Saturating: an n far beyond `MAX_N` is refused with a size that is too low rather than a panic.
+        self.dims(n)
+            .iter()
+            .fold(1_u64, |cells, &d| cells.saturating_mul(u64::from(d)))
+    }
+
     /// Bytes of the grid at `n`.
     pub fn bytes(&self, n: u32) -> u64 {
-        // Saturating: an n far beyond `MAX_N` is refused with a size that is too low rather than a panic.
-        let cells = self
-            .dims(n)
-            .iter()
-            .fold(1_u64, |cells, &d| cells.saturating_mul(u64::from(d)));
-        lists::bytes(cells, self.references(n).ceil() as u64)
+        lists::bytes(self.cells(n), self.references(n).ceil() as u64)
     }
 
     /// Cells that a random line through the box visits at `n`.
@@ -190,18 +198,18 @@ impl Model {
     /// The n that costs least, and the ends of the plateau around it where n cost at most 5 % more.
     pub fn best(&self) -> (u32, [u32; 2]) {
         let costs: Vec<f64> = (1..=self.largest_auto_n()).map(|n| self.cost(n)).collect();
-        let best = (0..costs.len()).fold(0, |b, i| if costs[i] < costs[b] { i } else { b });
-        let tie = |i: &usize| costs[*i] <= costs[best] * PLATEAU;
-        let first = (0..=best).rev().take_while(tie).last().unwrap_or(best);
-        let last = (best..costs.len()).take_while(tie).last().unwrap_or(best);
-        (best as u32 + 1, [first as u32 + 1, last as u32 + 1])
+        least(&costs)
     }
 
     /// The greatest n that is considered for the best: see [`AUTO_BYTES`].
     pub fn largest_auto_n(&self) -> u32 {
+        self.largest_n(self.auto_bytes()).max(1)
+    }
+
+    /// The greatest size of a structure with a predicted n: see [`AUTO_BYTES`].
+    pub fn auto_bytes(&self) -> u64 {
         let [base, each, most] = AUTO_BYTES;
-        let bytes = base + self.triangles as u64 * each;
-        self.largest_n(bytes.min(most)).max(1)
+        most.min(base + self.triangles as u64 * each)
     }
 
     /// The greatest n up to [`MAX_N`] whose grid takes at most `bytes`; 0 if not even one cell fits.
@@ -254,6 +262,16 @@ impl Model {
     fn surface(&self) -> f64 {
         surface_of(self.extent)
     }
+}
+
+/// The n that costs least, where `costs` begin with n = 1, and the ends of the plateau around it where n cost at most 5 %
+/// more. There is at least one.
+pub(in crate::accel) fn least(costs: &[f64]) -> (u32, [u32; 2]) {
+    let best = (0..costs.len()).fold(0, |b, i| if costs[i] < costs[b] { i } else { b });
+    let tie = |i: &usize| costs[*i] <= costs[best] * PLATEAU;
+    let first = (0..=best).rev().take_while(tie).last().unwrap_or(best);
+    let last = (best..costs.len()).take_while(tie).last().unwrap_or(best);
+    (best as u32 + 1, [first as u32 + 1, last as u32 + 1])
 }
 
 /// For each axis the product of the other two components.

@@ -22,6 +22,19 @@ const CHECKED_CELLS_OF_TRIANGLE: u64 = 200_000;
 /// A sentence that names the first broken promise.
 pub(super) fn check(lattice: &Lattice, lists: &Lists, mesh: &Mesh) -> Result<(), String> {
     well_formed(lattice, lists, mesh.len())?;
+    let lists = |cell: usize, prim: u32| lists.of(cell).binary_search(&prim).is_ok();
+    each_touched_cell(lattice, mesh, &lists)
+}
+
+/// Checks that a triangle is listed, as `lists` says, in every cell that it touches.
+///
+/// # Errors
+/// A sentence that names a triangle and a cell.
+pub(in crate::accel) fn each_touched_cell(
+    lattice: &Lattice,
+    mesh: &Mesh,
+    lists: &dyn Fn(usize, u32) -> bool,
+) -> Result<(), String> {
     let touched: u64 = (0..mesh.len() as u32)
         .map(|prim| {
             block(lattice, mesh, prim)
@@ -69,9 +82,13 @@ fn block(lattice: &Lattice, mesh: &Mesh, prim: u32) -> Block {
     lattice.block(bounds.min.as_dvec3(), bounds.max.as_dvec3())
 }
 
-fn listed_where_it_is(
+/// Checks that one triangle is listed in every cell that it touches.
+///
+/// # Errors
+/// A sentence that names the triangle and a cell.
+pub(in crate::accel) fn listed_where_it_is(
     lattice: &Lattice,
-    lists: &Lists,
+    lists: &dyn Fn(usize, u32) -> bool,
     mesh: &Mesh,
     prim: u32,
 ) -> Result<(), String> {
@@ -95,7 +112,7 @@ fn listed_where_it_is(
         let in_box = min.cmple(centre + half).all() && max.cmpge(centre - half).all();
         if in_box && triangle.touches(centre, half) {
             let index = lattice.index(cell) as usize;
-            if lists.of(index).binary_search(&prim).is_err() {
+            if !lists(index, prim) {
                 return Err(format!(
                     "triangle {prim} touches cell {cell:?} but is not listed there"
                 ));

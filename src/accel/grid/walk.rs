@@ -31,7 +31,7 @@ use super::lattice::Lattice;
 /// Where a ray is in a grid, and where it goes on. `ACCUMULATE` is a mistake that is exhibited: crossings are added up in
 /// `f32`, as in the paper.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Walk<const ACCUMULATE: bool> {
+pub(in crate::accel) struct Walk<const ACCUMULATE: bool> {
     /// Index of the cell in the lists.
     pub cell: usize,
     /// What is added to a `t` of the walk to give the ray's, from below.
@@ -52,12 +52,12 @@ pub(super) struct Walk<const ACCUMULATE: bool> {
 }
 
 /// How far a computed `t` may be off, relative: 8 units of 2⁻⁵³, for five roundings.
-const T_ERROR: f64 = 4.0 * f64::EPSILON;
+pub(in crate::accel) const T_ERROR: f64 = 4.0 * f64::EPSILON;
 
 /// The `t` at which a ray enters and leaves the padded box, never too late or too early; `None` if it passes by.
 ///
 /// A zero direction component is decided by comparing, so that 0 · ∞ never arises.
-fn clip(lattice: &Lattice, ray: &Ray) -> Option<[f64; 2]> {
+pub(in crate::accel) fn clip(lattice: &Lattice, ray: &Ray) -> Option<[f64; 2]> {
     let origin = ray.origin.as_dvec3().to_array();
     let dir = ray.dir.as_dvec3().to_array();
     let [mut entry, mut end] = [f64::NEG_INFINITY, f64::INFINITY];
@@ -82,7 +82,7 @@ fn clip(lattice: &Lattice, ray: &Ray) -> Option<[f64; 2]> {
 
 /// The lesser of two numbers, neither of them NaN: one instruction, where `f64::min` must think of NaN.
 #[inline(always)]
-fn least(a: f64, b: f64) -> f64 {
+pub(in crate::accel) fn least(a: f64, b: f64) -> f64 {
     if b < a { b } else { a }
 }
 

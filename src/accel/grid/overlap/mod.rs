@@ -17,7 +17,7 @@ pub(super) use single::SingleSeparating;
 pub(super) use three_test::ThreeTest;
 
 /// A triangle prepared for being tested against boxes.
-pub(super) trait Overlap: Copy {
+pub(in crate::accel) trait Overlap: Copy {
     /// Prepares the triangle with these corners.
     fn new(corners: [DVec3; 3]) -> Self;
 
@@ -29,7 +29,7 @@ pub(super) trait Overlap: Copy {
 
 /// `overlap=bbox`: a triangle is taken for its box.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Boxes;
+pub(in crate::accel) struct Boxes;
 
 impl Overlap for Boxes {
     fn new(_: [DVec3; 3]) -> Self {

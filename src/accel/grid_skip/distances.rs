@@ -1,0 +1,151 @@
+//! How far a ray may leap: for each cell and each of eight directions, the edge of the empty cube ahead of it, in cells.
+//!
+//! ```text
+//!   +---+---+---+---+---+
+//!   | 3 | 3 | 2 | 1 | # |      towards +x +y, `#` lists triangles: from `3` a ray may leave
+//!   +---+---+---+---+---+      the 3 × 3 cells up and to the right at once
+//!   | 4 | 3 | 2 | 1 | 1 |
+//!   +---+---+---+---+---+      towards -x the same cells have other numbers: behind `#` they are large at once
+//! ```
+//!
+//! **Source:** D. Cohen and Z. Sheffer, "Proximity clouds: an acceleration technique for 3D grid traversal", The Visual
+//! Computer 11, 1994, for the chessboard distance; A. Es and V. İşler, "Accelerated regular grid traversals using extended
+//! anisotropic chessboard distance fields on a parallel stream processor", JPDC 67, 2007, for one distance a direction.
+//! **Differs:** a row of cells is found at once, by doubling its steps.
+
+use rayon::prelude::*;
+
+use super::super::pages;
+use super::cells::Cells;
+
+/// Directions: bit a is set where a ray goes down axis a.
+pub(super) const OCTANTS: usize = 8;
+
+/// Greatest distance; what is farther, and what lies outside the grid, counts as this.
+const FAR: u8 = u8::MAX;
+
+/// The distances of all cells, direction after direction. 0: the cell lists triangles.
+pub(super) fn distances(cells: &Cells, dims: [u32; 3]) -> Vec<u8> {
+    let count = dims.iter().map(|&n| n as usize).product::<usize>();
+    let mut all = pages::with_capacity(OCTANTS * count);
+    all.resize(OCTANTS * count, 0);
+    all.par_chunks_mut(count.max(1))
+        .enumerate()
+        .for_each(|(octant, distances)| fill(octant, distances, cells, dims));
+    all
+}
+
+/// Fills in the distances of one direction, from the far end of the grid to the near one.
+fn fill(octant: usize, distances: &mut [u8], cells: &Cells, dims: [u32; 3]) {
+    let [nx, ny, nz] = dims.map(|n| n as usize);
+    let down = |axis: usize| octant >> axis & 1 == 1;
+    // Rows run with the ray: place c is cell c, or cell nx - 1 - c. Behind the last row and column lies the outside.
+    let outside = vec![FAR; nx];
+    let mut behind = vec![FAR; nx * ny];
+    let mut ahead = vec![FAR; nx * ny];
+    for z in (0..nz).map(|k| if down(2) { k } else { nz - 1 - k }) {
+        for k in 0..ny {
+            let y = if down(1) { k } else { ny - 1 - k };
+            let (before, row) = ahead.split_at_mut(k * nx);
+            let row = &mut row[..nx];
+            let in_plane = if k > 0 {
+                &before[(k - 1) * nx..]
+            } else {
+                &outside
+            };
+            let across = if k > 0 {
+                &behind[(k - 1) * nx..k * nx]
+            } else {
+                &outside
+            };
+            nearest(row, in_plane, &behind[k * nx..(k + 1) * nx], across);
+            let first = (z * ny + y) * nx;
+            let place = |x: usize| if down(0) { nx - 1 - x } else { x };
+            cells.each_listed(first..first + nx, |cell| row[place(cell - first)] = 0);
+            run(row);
+            let target = &mut distances[first..first + nx];
+            target.copy_from_slice(row);
+            if down(0) {
+                target.reverse();
+            }
+        }
+        std::mem::swap(&mut behind, &mut ahead);
+    }
+}
+
+/// One more than the least distance among the neighbours of each cell in three rows: beside it and one on.
+fn nearest(row: &mut [u8], a: &[u8], b: &[u8], c: &[u8]) {
+    for (((d, a), b), c) in row.iter_mut().zip(a).zip(b).zip(c) {
+        *d = (*a).min(*b).min(*c);
+    }
+    for x in 0..row.len().saturating_sub(1) {
+        row[x] = row[x].min(row[x + 1]);
+    }
+    for d in row {
+        *d = d.saturating_add(1);
+    }
+}
+
+/// Lets each cell be no farther than the ones on from it in its row are, plus the way there.
+fn run(row: &mut [u8]) {
+    let mut step = 1;
+    while step < row.len() && step < usize::from(FAR) {
+        for x in 0..row.len() - step {
+            row[x] = row[x].min(row[x + step].saturating_add(step as u8));
+        }
+        step *= 2;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::testbed::Dice;
+    use super::*;
+
+    /// The largest empty cube ahead of a cell, by looking at all of it.
+    fn judged(listed: &[bool], dims: [u32; 3], cell: [i64; 3], octant: usize) -> u8 {
+        let sign = |axis: usize| if octant >> axis & 1 == 1 { -1 } else { 1 };
+        let lists = |at: [i64; 3]| {
+            let inside = (0..3).all(|a| at[a] >= 0 && at[a] < i64::from(dims[a]));
+            inside
+                && listed
+                    [((at[2] * i64::from(dims[1]) + at[1]) * i64::from(dims[0]) + at[0]) as usize]
+        };
+        let is_empty = |edge: i64| {
+            (0..edge * edge * edge).all(|k| {
+                let step = [k % edge, k / edge % edge, k / edge / edge];
+                !lists(std::array::from_fn(|a| cell[a] + sign(a) * step[a]))
+            })
+        };
+        let longest = i64::from(*dims.iter().max().unwrap());
+        (0..)
+            .take_while(|&edge| edge <= longest && is_empty(edge))
+            .last()
+            .map_or(0, |edge| if edge == longest { FAR } else { edge as u8 })
+    }
+
+    #[test]
+    fn distances_are_those_of_a_slow_judge_in_every_direction() {
+        let mut dice = Dice::new(4);
+        for dims in [[1, 1, 1], [5, 1, 3], [7, 6, 5], [9, 9, 9], [2, 11, 1]] {
+            for rarity in [1, 2, 20, 200, 100_000] {
+                let count = dims.iter().product::<u32>();
+                let listed: Vec<bool> = (0..count).map(|_| dice.below(rarity) == 0).collect();
+                let cells = Cells::new(listed.len(), |cell| listed[cell]);
+                let all = distances(&cells, dims);
+                for octant in 0..OCTANTS {
+                    for k in 0..count {
+                        let cell = [k % dims[0], k / dims[0] % dims[1], k / dims[0] / dims[1]];
+                        let right = judged(&listed, dims, cell.map(i64::from), octant);
+                        let found = all[octant * count as usize + k as usize];
+                        let longest = *dims.iter().max().unwrap() as u8;
+                        // Beyond the longest axis there is nothing, however far.
+                        let found = if found >= longest { FAR } else { found };
+                        let right = if right >= longest { FAR } else { right };
+                        assert_eq!(found, right, "{dims:?}, {cell:?}, octant {octant}");
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! Sixteen rays of a batch go through the grid side by side, each at its own pace.
+//!
+//! ```text
+//! lanes:   ray 0   ray 1   ...   ray 15
+//!          where?  where?        where?      distances are read for all: sixteen misses of a cache overlap
+//!                   test          test       the blocks of those in listed cells were asked for before the first test
+//!          step    step          step        one instruction stream for all; a ray that is done makes room for the next
+//! ```
+
+use std::ops::Range;
+
+use super::super::share::Span;
+use super::super::{Rays, Visitor};
+use super::GridSkip;
+use super::walk::{Frame, Ways};
+
+/// Rays side by side.
+const LANES: usize = 16;
+
+/// A ray under way.
+struct Flight<V> {
+    index: usize,
+    visitor: V,
+    frame: Frame,
+    /// Where the distances of its direction begin.
+    direction: usize,
+    /// First block of what it tested last.
+    tested: u32,
+}
+
+/// Traces all rays of `batch`.
+#[inline(always)]
+pub(super) fn trace<'a, R: Rays<'a>>(grid: &GridSkip, batch: &mut R) {
+    let mut waiting = 0..batch.rays().len();
+    if waiting.is_empty() {
+        return;
+    }
+    let mut ways = Ways::<LANES>::none();
+    let mut spans = [Span::default(); LANES];
+    let mut flights = Vec::with_capacity(LANES);
+    let mut under_way = 0_u32;
+    for lane in 0..LANES {
+        flights.push(Flight {
+            index: 0,
+            visitor: batch.begin(0),
+            frame: Frame::NONE,
+            direction: 0,
+            tested: u32::MAX,
+        });
+        if board(
+            grid,
+            batch,
+            &mut waiting,
+            &mut ways,
+            lane,
+            &mut flights[lane],
+        ) {
+            under_way |= 1 << lane;
+        }
+    }
+    while under_way != 0 {
+        let mut listed = 0;
+        for (lane, flight) in flights.iter().enumerate() {
+            let leap = grid.distances[flight.direction + ways.cell[lane] as usize];
+            ways.leap[lane] = i32::from(leap);
+            listed |= u32::from(leap == 0) << lane;
+        }
+        let mut to_test = 0_u32;
+        listed &= under_way;
+        while listed != 0 {
+            let lane = listed.trailing_zeros() as usize % LANES;
+            listed &= listed - 1;
+            let span = grid.cells.span(ways.cell[lane] as usize);
+            if span.first != flights[lane].tested {
+                flights[lane].tested = span.first;
+                spans[lane] = span;
+                to_test |= 1 << lane;
+                batch.prefetch(span.first);
+            }
+        }
+        while to_test != 0 {
+            let lane = to_test.trailing_zeros() as usize % LANES;
+            to_test &= to_test - 1;
+            let flight = &mut flights[lane];
+            for block in spans[lane].blocks() {
+                if flight.visitor.test(block) {
+                    break;
+                }
+            }
+            ways.stop[lane] = flight.frame.stop(flight.visitor.t_limit());
+        }
+        let mut done = ways.advance(grid.dims) & under_way;
+        while done != 0 {
+            let lane = done.trailing_zeros() as usize % LANES;
+            done &= done - 1;
+            let flight = &mut flights[lane];
+            batch.finish(flight.index, &flight.visitor);
+            if !board(grid, batch, &mut waiting, &mut ways, lane, flight) {
+                ways.take(lane);
+                flight.direction = 0;
+                under_way &= !(1 << lane);
+            }
+        }
+    }
+}
+
+/// Puts the next ray that enters the grid into a lane; those before it that do not are answered. False if none is left.
+#[inline(always)]
+fn board<'a, R: Rays<'a>>(
+    grid: &GridSkip,
+    batch: &mut R,
+    waiting: &mut Range<usize>,
+    ways: &mut Ways<LANES>,
+    lane: usize,
+    flight: &mut Flight<R::Visitor>,
+) -> bool {
+    for index in waiting {
+        let entered = ways.put(lane, &grid.lattice, &batch.rays()[index]);
+        flight.visitor = batch.begin(index);
+        if let Some((frame, octant)) = entered {
+            flight.index = index;
+            flight.frame = frame;
+            flight.direction = grid.direction(octant);
+            flight.tested = u32::MAX;
+            ways.stop[lane] = frame.stop(flight.visitor.t_limit());
+            return true;
+        }
+        batch.finish(index, &flight.visitor);
+    }
+    false
+}

@@ -135,8 +135,10 @@ pub(super) fn validate(
     }
     for (block, (count, lanes)) in filled.iter().zip(lanes.as_chunks::<LANES>().0).enumerate() {
         let count = usize::from(*count);
-        let is_filled = (1..=LANES).contains(&count);
-        if !is_filled || lanes[count..].iter().any(|prim| *prim != lanes[count - 1]) {
+        let is_filled = (1..=LANES).contains(&count)
+            && lanes[..count].windows(2).all(|pair| pair[0] != pair[1])
+            && lanes[count..].iter().all(|prim| *prim == lanes[count - 1]);
+        if !is_filled {
             return Err(format!("block {block} does not hold {count} triangles"));
         }
     }

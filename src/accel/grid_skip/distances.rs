@@ -118,8 +118,8 @@ mod tests {
             })
         };
         let longest = i64::from(*dims.iter().max().unwrap());
-        (0..)
-            .take_while(|&edge| edge <= longest && is_empty(edge))
+        (0..=longest)
+            .take_while(|&edge| is_empty(edge))
             .last()
             .map_or(0, |edge| if edge == longest { FAR } else { edge as u8 })
     }

@@ -60,7 +60,7 @@ fn a_distance_one_too_great_is_found_in_every_direction() {
     let cells = grid.lattice.len() as usize;
     for octant in 0..OCTANTS {
         // From the middle on, so that there is something ahead.
-        let place = (octant * cells + cells / 2..)
+        let place = (octant * cells + cells / 2..(octant + 1) * cells)
             .find(|&place| (1..5).contains(&grid.distances[place]))
             .unwrap();
         grid.distances[place] += 1;
@@ -72,6 +72,28 @@ fn a_distance_one_too_great_is_found_in_every_direction() {
     grid.distances[listed] = 1;
     let broken = grid.validate(&mesh, &slots).unwrap_err();
     assert!(broken.contains("against its bit"), "{broken}");
+}
+
+#[test]
+fn distances_one_too_great_lose_hits() {
+    let mesh = mesh(&soup(300, 0.1, 4));
+    let (accel, kernel) = (parse("grid-skip").unwrap(), kernel::parse("woop").unwrap());
+    let request = BuildRequest {
+        kernel: &kernel,
+        ..request(&mesh, &accel, 24)
+    };
+    let rays = rays(&mesh, 500, 2);
+    let hits = |more: u8| {
+        let (mut grid, slots) = GridSkip::new(&request).unwrap();
+        for distance in grid.distances.iter_mut().filter(|distance| **distance > 0) {
+            *distance = distance.saturating_add(more);
+        }
+        let mut hits = vec![Hit::MISS; rays.len()];
+        let accel = finish_in_order(grid, &slots, &request).unwrap();
+        accel.closest(&rays, &mut hits);
+        hits.iter().filter(|hit| hit.is_hit()).count()
+    };
+    assert!(hits(1) < hits(0));
 }
 
 #[test]

@@ -20,7 +20,7 @@ fn nasty_meshes_are_answered_as_by_brute_force() {
             "grid-2level:density=0.3",
             "grid-2level:overlap=bbox",
         ] {
-            for n in [1, 3, 12] {
+            for n in [1, 9] {
                 assert_agrees_at(name, &mesh, (accel, Some(n)), &rays, 0);
             }
         }

@@ -346,7 +346,7 @@ fn a_ray_set_is_written_and_traced_alike_by_every_accelerator() {
         0
     );
     let mut answers = Vec::new();
-    for accel in ["brute", "grid", "kd-tree", "bvh"] {
+    for accel in ["brute", "grid", "kd-tree", "octree", "bsp-tree", "bvh"] {
         let args = [
             "trace",
             "teapot:4",
@@ -441,6 +441,8 @@ fn every_accelerator_is_inspected_to_the_answer_that_trace_gives() {
         ("brute", "leaf"),
         ("grid", "cell"),
         ("kd-tree", "node"),
+        ("octree", "node"),
+        ("bsp-tree", "node"),
         ("bvh", "node"),
     ] {
         for pixel in pixels {

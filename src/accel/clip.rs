@@ -30,35 +30,77 @@ impl Polygon {
         }
     }
 
-    /// The part where `sign · x[axis] ≤ sign · plane`.
-    fn cut(&self, axis: usize, sign: f64, plane: f64) -> Self {
+    /// The triangle, cut to what is within `pad` of the closed `cell`.
+    fn within(corners: &[Vec3; 3], cell: &Aabb, pad: f64) -> Self {
+        let [a, b, c] = corners.map(Vec3::as_dvec3);
+        let whole = Aabb::of_points(*corners);
+        let mut part = Self {
+            vertices: [a, b, c, a, a, a, a, a, a],
+            len: 3,
+        };
+        for axis in 0..3 {
+            if whole.max[axis] > cell.max[axis] {
+                part.cut(axis, 1.0, f64::from(cell.max[axis]) + pad);
+            }
+            if whole.min[axis] < cell.min[axis] {
+                part.cut(axis, -1.0, f64::from(cell.min[axis]) - pad);
+            }
+        }
+        part
+    }
+
+    /// Leaves the part where `sign · x[axis] ≤ sign · plane`.
+    fn cut(&mut self, axis: usize, sign: f64, plane: f64) {
         let depth = |v: DVec3| sign * (plane - v[axis]);
         if self.vertices().iter().all(|&v| depth(v) >= 0.0) {
-            return *self;
+            return;
         }
-        let mut part = Self {
-            vertices: [DVec3::ZERO; 9],
-            len: 0,
-        };
-        let Some(&last) = self.vertices().last() else {
-            return part;
+        let whole = *self;
+        self.len = 0;
+        let Some(&last) = whole.vertices().last() else {
+            return;
         };
         let mut from = last;
-        for &to in self.vertices() {
+        for &to in whole.vertices() {
             let (a, b) = (depth(from), depth(to));
             if (a < 0.0) != (b < 0.0) {
                 // Equal coordinates stay exactly equal: their difference is zero.
                 let mut crossing = from + (to - from) * (a / (a - b));
                 crossing[axis] = plane;
-                part.push(crossing);
+                self.push(crossing);
             }
             if b >= 0.0 {
-                part.push(to);
+                self.push(to);
             }
             from = to;
         }
-        part
     }
+
+    /// The box of the polygon within `cell`, as far out as it can be by `pad`; `None` where there is nothing.
+    fn bounds(&self, corners: &[Vec3; 3], cell: &Aabb, pad: f64) -> Option<Aabb> {
+        let [a, b, c] = corners;
+        let (mut min, mut max) = (*self.vertices().first()?, self.vertices[0]);
+        for &v in self.vertices() {
+            (min, max) = (min.min(v), max.max(v));
+        }
+        let mut bounds = *cell;
+        for axis in 0..3 {
+            let flat = a[axis] == b[axis] && b[axis] == c[axis];
+            let pad = if flat { 0.0 } else { pad };
+            bounds.min[axis] = cell.min[axis].max(rounded_down(min[axis] - pad));
+            bounds.max[axis] = cell.max[axis].min(rounded_up(max[axis] + pad));
+            // A part within the pad outside the cell is taken as lying on its face.
+            bounds.min[axis] = bounds.min[axis].min(cell.max[axis]);
+            bounds.max[axis] = bounds.max[axis].max(cell.min[axis]);
+        }
+        Some(bounds)
+    }
+}
+
+/// More than the errors of a clip.
+fn pad(corners: &[Vec3; 3], cell: &Aabb) -> f64 {
+    let size = Aabb::of_points(*corners).max_abs().max(cell.max_abs());
+    PAD * f64::from(size)
 }
 
 /// The box of the part of a triangle inside the closed `cell`; `None` where nothing is inside.
@@ -66,40 +108,33 @@ impl Polygon {
 /// Contains every point that the exact triangle and the exact cell share, lies within `cell`, and is larger than the
 /// exact box by no more than a rounding to `f32`. `None` only if they are disjoint.
 pub(super) fn clipped_bounds(corners: &[Vec3; 3], cell: &Aabb) -> Option<Aabb> {
-    let vertices = corners.map(Vec3::as_dvec3);
-    let size = Aabb::of_points(*corners).max_abs().max(cell.max_abs());
-    let pad = PAD * f64::from(size);
-    let [a, b, c] = vertices;
-    let mut part = Polygon {
-        vertices: [a, b, c, a, a, a, a, a, a],
-        len: 3,
-    };
-    for axis in 0..3 {
-        part = part.cut(axis, 1.0, f64::from(cell.max[axis]) + pad);
-        part = part.cut(axis, -1.0, f64::from(cell.min[axis]) - pad);
-    }
-    if part.len == 0 {
-        return None;
-    }
-    let (mut min, mut max) = (part.vertices[0], part.vertices[0]);
-    for &v in part.vertices() {
-        (min, max) = (min.min(v), max.max(v));
-    }
-    let mut bounds = *cell;
-    for axis in 0..3 {
-        let flat = a[axis] == b[axis] && b[axis] == c[axis];
-        let pad = if flat { 0.0 } else { pad };
-        bounds.min[axis] = cell.min[axis].max(rounded_down(min[axis] - pad));
-        bounds.max[axis] = cell.max[axis].min(rounded_up(max[axis] + pad));
-        // A part within the pad outside the cell is taken as lying on its face.
-        bounds.min[axis] = bounds.min[axis].min(cell.max[axis]);
-        bounds.max[axis] = bounds.max[axis].max(cell.min[axis]);
-    }
-    Some(bounds)
+    let pad = pad(corners, cell);
+    Polygon::within(corners, cell, pad).bounds(corners, cell, pad)
+}
+
+/// As [`clipped_bounds`], for the halves of `cell` below and above the plane inside it where `axis` is `place`.
+pub(super) fn clipped_halves(
+    corners: &[Vec3; 3],
+    cell: &Aabb,
+    axis: usize,
+    place: f32,
+) -> [Option<Aabb>; 2] {
+    let pad = pad(corners, cell);
+    let whole = Polygon::within(corners, cell, pad);
+    let (mut lower, mut upper) = (whole, whole);
+    lower.cut(axis, 1.0, f64::from(place) + pad);
+    upper.cut(axis, -1.0, f64::from(place) - pad);
+    let (mut below, mut above) = (*cell, *cell);
+    below.max[axis] = place;
+    above.min[axis] = place;
+    [
+        lower.bounds(corners, &below, pad),
+        upper.bounds(corners, &above, pad),
+    ]
 }
 
 /// The greatest `f32` that is not above `x`.
-fn rounded_down(x: f64) -> f32 {
+pub(super) fn rounded_down(x: f64) -> f32 {
     let nearest = x as f32;
     if f64::from(nearest) > x {
         nearest.next_down()
@@ -109,7 +144,7 @@ fn rounded_down(x: f64) -> f32 {
 }
 
 /// The least `f32` that is not below `x`.
-fn rounded_up(x: f64) -> f32 {
+pub(super) fn rounded_up(x: f64) -> f32 {
     -rounded_down(-x)
 }
 

@@ -2,7 +2,7 @@
 //! it may stop. They never decide a hit and know nothing of kernels, colours, files or time.
 //!
 //! ```text
-//! Structure (one file each: brute, grid, kd_tree, bvh)      Kernel (crate::kernel)
+//! Structure (one room each: brute, grid, plane_tree, bvh)    Kernel (crate::kernel)
 //!        \  traverse(ray, visitor)                          /  intersect(ray, triangles)
 //!         \                Items: single triangles, blocks  /
 //!          `-----------------  Traced<S, K>  --------------'
@@ -31,6 +31,7 @@ use crate::scene::Mesh;
 mod batch;
 mod behind;
 mod brute;
+mod bsp_tree;
 mod bvh;
 mod bvh_wide;
 mod clip;
@@ -40,9 +41,12 @@ mod grid_skip;
 mod grid_two_level;
 mod items;
 mod kd_tree;
+mod octree;
 mod packet;
+mod packets;
 mod pages;
 mod peers;
+mod plane_tree;
 mod query;
 mod record;
 mod sah;
@@ -59,8 +63,8 @@ use behind::Behind;
 pub use brute::Brute;
 pub use bvh::Bvh;
 pub use items::{Blocks, Items, Singles};
-pub use kd_tree::KdTree;
 pub use peers::{Peer, Standing};
+pub use plane_tree::PlaneTree;
 pub use record::{Outcome, PlaceKind, Recording, Test, Visit};
 pub use traced::finish;
 pub use visit::{Counts, Visitor};
@@ -299,6 +303,8 @@ pub static ACCELERATORS: &[AcceleratorEntry] = &[
     grid_skip::ENTRY,
     grid_two_level::ENTRY,
     kd_tree::ENTRY,
+    octree::ENTRY,
+    bsp_tree::ENTRY,
     bvh::ENTRY,
     bvh_wide::ENTRY,
     peers::OBVHS,

@@ -238,7 +238,7 @@ mod tests {
     #[test]
     fn the_ray_is_within_the_bounds_of_each_place_from_entry_to_exit() {
         let mesh = mesh(&sphere(12));
-        for accel in ["grid", "kd-tree", "bvh"] {
+        for accel in ["grid", "kd-tree", "octree", "bsp-tree", "bvh"] {
             let accelerator = built(&mesh, accel, "woop");
             for ray in rays(&mesh, 200, 6) {
                 for visit in accelerator.inspect(&ray).visits {

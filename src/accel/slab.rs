@@ -21,7 +21,7 @@ use crate::geometry::{Aabb, Ray, Vec3};
 use super::packet::Bundle;
 
 /// Half-width of the cone in units of the way along the ray's longest axis: 8ε = 16u. The test itself needs 4u.
-const CONE: f32 = 8.0 * f32::EPSILON;
+pub(super) const CONE: f32 = 8.0 * f32::EPSILON;
 
 /// Numbers beyond this (or below its inverse) could overflow (or underflow) on their way to `t`, a quotient of two of them; then no
 /// face is trusted.
@@ -127,22 +127,19 @@ impl SlabRay {
         (entry, exit)
     }
 
-    /// Cuts the interval at the plane where `axis` is `plane`: the exit from the side that the ray comes from, the entry
-    /// into the other side, and which side the ray comes from: 1 for that of the greater coordinates.
+    /// The ray at the plane where `axis` is `plane`: the latest `t` on the side that it comes from, the earliest `t` on the
+    /// other, and which side it comes from: 1 for that of the greater coordinates. NaN constrains nothing.
     ///
-    /// The ray does not touch the first side if that exit is less than `entry`, nor the second if that entry is greater
-    /// than `exit`. Both are touched where the plane is met, or lain in, within the pad.
+    /// The ray does not touch the first side after the one, nor the second before the other. Both are touched where the
+    /// plane is met, or lain in, within the pad.
     #[inline(always)]
-    pub fn cut(&self, axis: usize, plane: f32, entry: f32, exit: f32) -> (f32, f32, usize) {
+    pub fn crossing(&self, axis: usize, plane: f32) -> (f32, f32, u32) {
         let slab = &self.slabs[axis];
-        (slab.leave(plane, exit), slab.enter(plane, entry), slab.near)
-    }
-
-    /// As [`SlabRay::clip`], `None` where the box is missed.
-    #[inline(always)]
-    pub fn interval(&self, corners: &Corners, limit: f32) -> Option<(f32, f32)> {
-        let (entry, exit) = self.clip(corners, limit);
-        (entry <= exit).then_some((entry, exit))
+        (
+            (plane - slab.far_origin) * slab.far_inverse,
+            (plane - slab.near_origin) * slab.near_inverse,
+            slab.near as u32,
+        )
     }
 }
 
@@ -271,7 +268,24 @@ pub(super) struct PacketSlabs<L> {
     t_min: L,
 }
 
-impl<L: Lane<8>> PacketSlabs<L> {
+/// What the slabs of rays with a common origin have in common: bounds on the reciprocals of their directions.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pencil {
+    /// Where the rays begin.
+    pub origin: Vec3,
+    /// Least and greatest components of the directions.
+    pub dirs: [Vec3; 2],
+    /// The greatest component of all.
+    pub longest: f32,
+    near_inverse: [Vec3; 2],
+    far_inverse: [Vec3; 2],
+    /// Which side the rays come from along each axis: 1 where their directions are negative.
+    pub near: [u32; 3],
+    /// Least of the rays.
+    pub t_min: f32,
+}
+
+impl Pencil {
     /// Of the rays of `bundle`; `None` where their directions differ in a sign or a ray is not plain.
     #[inline(always)]
     pub fn new<R: Lane<1>>(bundle: &Bundle<R>, scene: &Aabb) -> Option<Self> {
@@ -307,19 +321,51 @@ impl<L: Lane<8>> PacketSlabs<L> {
             (small - wide).recip() * sign,
         ];
         Some(Self {
-            origin: [
-                L::splat(lead.origin.x),
-                L::splat(lead.origin.y),
-                L::splat(lead.origin.z),
-            ],
-            near_inverse: Self::bounds(near),
-            far_inverse: Self::bounds(far),
+            origin: lead.origin,
+            dirs: bundle.interval,
+            longest,
+            near_inverse: near,
+            far_inverse: far,
             near: [
-                usize::from(sign.x < 0.0),
-                usize::from(sign.y < 0.0),
-                usize::from(sign.z < 0.0),
+                u32::from(sign.x < 0.0),
+                u32::from(sign.y < 0.0),
+                u32::from(sign.z < 0.0),
             ],
-            t_min: L::splat(t_min),
+            t_min,
+        })
+    }
+
+    /// Earliest `t` beyond the plane where `axis` is `plane` over all rays.
+    #[inline(always)]
+    pub fn enter(&self, axis: usize, plane: f32) -> f32 {
+        let way = plane - self.origin[axis];
+        (way * self.near_inverse[0][axis]).min(way * self.near_inverse[1][axis])
+    }
+
+    /// Latest `t` before it over all rays.
+    #[inline(always)]
+    pub fn leave(&self, axis: usize, plane: f32) -> f32 {
+        let way = plane - self.origin[axis];
+        (way * self.far_inverse[0][axis]).max(way * self.far_inverse[1][axis])
+    }
+}
+
+impl<L: Lane<8>> PacketSlabs<L> {
+    /// As [`Pencil::new`], in lanes.
+    #[inline(always)]
+    pub fn new<R: Lane<1>>(bundle: &Bundle<R>, scene: &Aabb) -> Option<Self> {
+        let pencil = Pencil::new(bundle, scene)?;
+        let origin = pencil.origin;
+        Some(Self {
+            origin: [L::splat(origin.x), L::splat(origin.y), L::splat(origin.z)],
+            near_inverse: Self::bounds(pencil.near_inverse),
+            far_inverse: Self::bounds(pencil.far_inverse),
+            near: [
+                pencil.near[0] as usize,
+                pencil.near[1] as usize,
+                pencil.near[2] as usize,
+            ],
+            t_min: L::splat(pencil.t_min),
         })
     }
 

@@ -270,7 +270,8 @@ pub fn assert_agrees_at(
     assert_agrees_with("moller-trumbore", name, mesh, accel, rays, excused);
 }
 
-fn assert_agrees_with(
+/// As [`assert_agrees_at`], for any kernel.
+pub fn assert_agrees_with(
     kernel: &str,
     name: &str,
     mesh: &Arc<Mesh>,

@@ -24,14 +24,15 @@ use crate::geometry::{Aabb, Ray};
 use crate::scene::Mesh;
 
 use super::bvh::{Build, binary};
+use super::packets;
 use super::slab::WideCorners;
 use super::traced::finish_in_order;
 use super::{AcceleratorEntry, Blocks, Rays, Structure, StructureStats, Visitor};
 
 mod collapse;
 mod interleaved;
-mod packets;
 mod stack;
+mod together;
 mod validate;
 mod walk;
 mod way;

@@ -3,6 +3,7 @@
 use crate::geometry::Ray;
 use crate::registry::{ParamKind, ParamSpec, Params};
 
+use super::super::packets::share_origin;
 use super::{BvhWide, Node};
 
 /// How a batch is traced.
@@ -67,10 +68,4 @@ fn are_coherent(rays: &[Ray]) -> bool {
         dot > 0.0 && dot * dot > COHERENT * COHERENT * a.length_squared() * b.length_squared()
     };
     pairs.clone().filter(close).count() * 2 > pairs.count()
-}
-
-/// Whether the rays of a sample start at one point.
-fn share_origin(rays: &[Ray]) -> bool {
-    let mut sample = rays.iter().step_by(16);
-    rays.len() > 1 && sample.all(|ray| ray.origin == rays[0].origin)
 }

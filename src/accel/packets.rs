@@ -1,4 +1,4 @@
-//! Rays from one origin go through the tree together, as long as that costs less than going alone.
+//! Rays from one origin go through a structure together, as long as that costs less than going alone.
 //!
 //! A packet is a run of rays of the batch: 64, which of a picture's rays are a square of 8 × 8 pixels, or 16. Where
 //! triangles are smaller than the packet, its rays test each other's triangles, and it collapses: then it gives up, its
@@ -6,20 +6,16 @@
 
 use std::ops::Range;
 
-use super::super::Rays;
-use super::super::Structure;
-use super::super::packet::{Bundle, MOST, VECTOR};
-use super::super::slab::PacketSlabs;
-use super::BvhWide;
-use super::stack::Stacks;
-use super::walk::Walk;
-use crate::geometry::lanes::Isa;
+use crate::geometry::Ray;
+
+use super::packet::{MOST, VECTOR};
+use super::{Rays, Structure};
 
 /// Cost of a ray in a packet of 64, about in nanoseconds, above which packets of 16 are better.
 const TOO_WIDE: u32 = 20;
 
 /// Cost of a ray in a packet above which it had better go alone: half of what that costs.
-const TOO_DEAR: u32 = 40;
+pub(super) const TOO_DEAR: u32 = 40;
 
 /// Cost of a ray in a packet of 16 below which 64 may go together.
 const CHEAP: u32 = 15;
@@ -27,12 +23,29 @@ const CHEAP: u32 = 15;
 /// Rays that go alone until a packet is tried again.
 const ALONE: usize = 256;
 
+/// A structure that packets can go through.
+pub(super) trait Together: Structure {
+    /// Traces the rays in `range` as a packet and returns what it cost; `None` if they cannot be one, or had better not.
+    fn together<'a, R: Rays<'a>>(
+        &self,
+        batch: &mut R,
+        range: Range<usize>,
+        scratch: &mut Self::Scratch,
+    ) -> Option<u32>;
+}
+
+/// Whether the rays of a sample start at one point.
+pub(super) fn share_origin(rays: &[Ray]) -> bool {
+    let mut sample = rays.iter().step_by(16);
+    rays.len() > 1 && sample.all(|ray| ray.origin == rays[0].origin)
+}
+
 /// Traces all rays of `batch`, as packets where `packets` asks for them.
 #[inline(always)]
-pub(super) fn trace<'a, R: Rays<'a>>(
-    tree: &BvhWide,
+pub(super) fn trace<'a, S: Together, R: Rays<'a>>(
+    structure: &S,
     batch: &mut R,
-    stacks: &mut Stacks,
+    scratch: &mut S::Scratch,
     packets: bool,
 ) {
     let count = batch.rays().len();
@@ -43,7 +56,7 @@ pub(super) fn trace<'a, R: Rays<'a>>(
         if R::PACKETS && packets {
             let range = start..count.min(start + size);
             let rays = range.len() as u32;
-            if let Some(cost) = together(tree, batch, range.clone(), stacks) {
+            if let Some(cost) = structure.together(batch, range.clone(), scratch) {
                 start = range.end;
                 if cost > TOO_WIDE * rays {
                     size = VECTOR;
@@ -64,29 +77,8 @@ pub(super) fn trace<'a, R: Rays<'a>>(
         for index in alone {
             let mut visitor = batch.begin(index);
             let ray = batch.rays()[index];
-            tree.traverse::<R::Isa, _>(&ray, stacks, &mut visitor);
+            structure.traverse::<R::Isa, _>(&ray, scratch, &mut visitor);
             batch.finish(index, &visitor);
         }
     }
-}
-
-/// Traces the rays in `range` as a packet and returns what it cost; `None` if they cannot be one, or had better not.
-#[inline(always)]
-fn together<'a, R: Rays<'a>>(
-    tree: &BvhWide,
-    batch: &mut R,
-    range: Range<usize>,
-    stacks: &mut Stacks,
-) -> Option<u32> {
-    let first = range.start;
-    let bundle = Bundle::new(&batch.rays()[range])?;
-    let slabs = PacketSlabs::<<R::Isa as Isa>::X8>::new(&bundle, &tree.bounds)?;
-    let budget = TOO_DEAR * bundle.rays.len() as u32;
-    let mut packet = batch.begin_packet(&bundle, first, budget)?;
-    let [stack] = stacks.first(1) else {
-        return None;
-    };
-    let mut walk = Walk::<R::Isa, _>::along(slabs, tree, 0.0);
-    while walk.step(tree, stack, &mut packet) {}
-    batch.finish_packet(&packet)
 }

@@ -1,0 +1,82 @@
+//! The tree of planes in any direction as a whole.
+
+use proptest::prelude::*;
+
+use super::super::stack::MAX_DEPTH;
+use super::super::testbed::{
+    assert_agrees, assert_agrees_with, built, geometric, mesh, nasty, ray_count, rays, soup, sphere,
+};
+use super::super::{Counts, Structure, StructureStats};
+use super::*;
+use crate::geometry::Hit;
+
+fn tree(mesh: &Mesh) -> (PlaneTree, Vec<u32>) {
+    let (tree, slots) = build(mesh);
+    tree.validate(mesh, &slots).expect("valid");
+    (tree, slots)
+}
+
+fn stats(mesh: &Mesh) -> StructureStats {
+    tree(mesh).0.stats()
+}
+
+#[test]
+fn nasty_meshes_are_answered_as_by_brute_force() {
+    for (name, mesh) in nasty() {
+        let rays = rays(&mesh, ray_count(&mesh), 7);
+        assert_agrees(name, &mesh, "bsp-tree", &rays);
+        assert_agrees_with("exact", name, &mesh, ("bsp-tree", None), &rays, 0);
+    }
+}
+
+#[test]
+fn one_thread_and_many_build_the_same_tree() {
+    let mesh = mesh(&soup(3000, 0.1, 10));
+    let build = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        pool.build().expect("a pool").install(|| tree(&mesh))
+    };
+    assert!(build(1) == build(5));
+}
+
+#[test]
+fn a_convex_body_is_cut_off_by_the_planes_of_its_faces() {
+    let mesh = mesh(&sphere(8));
+    let tested = |accel: &str| {
+        let accelerator = built(&mesh, accel, "woop");
+        let rays = rays(&mesh, 1000, 4);
+        let mut hits = vec![Hit::MISS; rays.len()];
+        let mut counts = vec![Counts::default(); rays.len()];
+        accelerator.closest_counted(&rays, &mut hits, &mut counts);
+        counts.iter().map(|count| count.tests).sum::<u64>()
+    };
+    assert!(tested("bsp-tree") < tested("kd-tree"));
+}
+
+#[test]
+fn identical_triangles_are_not_cut_without_end() {
+    let twin = soup(1, 1.0, 3)[0];
+    let stats = stats(&mesh(&vec![twin; 2000]));
+    assert!(stats.references <= 32_000, "{stats:?}");
+}
+
+#[test]
+fn the_depth_stays_bounded_where_planes_peel_off_one_triangle_at_a_time() {
+    let stats = stats(&mesh(&geometric(-120..149).repeat(20)));
+    assert!(stats.depth <= MAX_DEPTH as u32, "{stats:?}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+    #[test]
+    fn any_soup_is_answered_as_by_brute_force(
+        count in 0_u32..120,
+        size in prop_oneof![Just(0.0_f32), 1e-4_f32..2.0],
+        seed in any::<u64>(),
+    ) {
+        let mesh = mesh(&soup(count, size, seed));
+        let rays = rays(&mesh, 200, seed ^ 1);
+        assert_agrees("soup", &mesh, "bsp-tree", &rays);
+        assert_agrees_with("exact", "soup", &mesh, ("bsp-tree", None), &rays, 0);
+    }
+}

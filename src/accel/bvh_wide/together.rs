@@ -1,0 +1,34 @@
+//! Packets through a wide tree; see [`super::super::packets`].
+
+use std::ops::Range;
+
+use super::super::Rays;
+use super::super::packet::Bundle;
+use super::super::packets::{TOO_DEAR, Together};
+use super::super::slab::PacketSlabs;
+use super::BvhWide;
+use super::stack::Stacks;
+use super::walk::Walk;
+use crate::geometry::lanes::Isa;
+
+impl Together for BvhWide {
+    #[inline(always)]
+    fn together<'a, R: Rays<'a>>(
+        &self,
+        batch: &mut R,
+        range: Range<usize>,
+        stacks: &mut Stacks,
+    ) -> Option<u32> {
+        let first = range.start;
+        let bundle = Bundle::new(&batch.rays()[range])?;
+        let slabs = PacketSlabs::<<R::Isa as Isa>::X8>::new(&bundle, &self.bounds)?;
+        let budget = TOO_DEAR * bundle.rays.len() as u32;
+        let mut packet = batch.begin_packet(&bundle, first, budget)?;
+        let [stack] = stacks.first(1) else {
+            return None;
+        };
+        let mut walk = Walk::<R::Isa, _>::along(slabs, self, 0.0);
+        while walk.step(self, stack, &mut packet) {}
+        batch.finish_packet(&packet)
+    }
+}

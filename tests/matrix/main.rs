@@ -37,7 +37,7 @@ const EXACT: &str = "exact";
 /// Kernels of which not even an error may differ on a scene of ordinary scale.
 const STRICT: &[&str] = &["woop", "moller-trumbore"];
 
-/// Kernels that every combination of an accelerator's parameters is tried with; the others meet its defaults.
+/// Kernels that every combination of an accelerator's parameters, and every n, is tried with; the others meet its defaults.
 const EVERYWAY: &[&str] = &["woop", "moller-trumbore", "exact"];
 
 /// Every combination of the words of `specs`; numbers keep their defaults.
@@ -65,8 +65,8 @@ fn combinations(specs: &'static [ParamSpec]) -> Vec<Params> {
 /// The n at which all parameters of an accelerator are tried: small, and not one at which cells meet the scenes' planes.
 const EVERYWHERE: u32 = 5;
 
-/// What is built of one accelerator over one scene: the defaults at several n, where it has one, the predicted among them,
-/// and, where `all` is asked for, every combination of its parameters.
+/// What is built of one accelerator over one scene: the defaults and, where `all` is asked for, every combination of its
+/// parameters, and the defaults at several n, where it has one, the predicted among them.
 fn builds(
     entry: &'static AcceleratorEntry,
     scene: &Setting,
@@ -82,13 +82,13 @@ fn builds(
     } else {
         vec![Params::defaults(entry.params)]
     };
-    let all = params.into_iter().map(|params| (choice(params), n));
-    if n.is_none() {
-        return all.collect();
+    let builds = params.into_iter().map(|params| (choice(params), n));
+    if n.is_none() || !all {
+        return builds.collect();
     }
     let defaults = choice(Params::defaults(entry.params));
     let resolutions = scene.resolutions.iter().copied().map(Some).chain([None]);
-    all.chain(resolutions.map(|n| (defaults.clone(), n)))
+    builds.chain(resolutions.map(|n| (defaults.clone(), n)))
         .collect()
 }
 

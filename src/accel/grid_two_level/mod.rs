@@ -163,6 +163,8 @@ impl Structure for Grid2Level {
     type Scratch = ();
 
     const LEAF: PlaceKind = PlaceKind::Cell;
+    // Its walk costs far more than the calls.
+    const DIRECT: bool = false;
 
     fn scratch(&self) {}
 

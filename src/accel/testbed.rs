@@ -229,6 +229,37 @@ pub fn rays(mesh: &Mesh, count: u32, seed: u64) -> Vec<Ray> {
     rays
 }
 
+/// Rays at `mesh` from one origin, as those of a picture: runs of 64, some narrow and some wide, aimed at corners too.
+pub fn pencil(mesh: &Mesh, count: u32, seed: u64) -> Vec<Ray> {
+    let mut dice = Dice::new(seed);
+    let bounds = if mesh.is_empty() {
+        crate::geometry::Aabb::of_points([-Vec3::ONE, Vec3::ONE])
+    } else {
+        mesh.bounds()
+    };
+    let (centre, half) = (bounds.centre(), bounds.extent() * 0.5);
+    let radius = half.max_element().max(1.0);
+    let origin = centre + 2.0 * radius * dice.vector();
+    let (mut target, mut spread) = (centre, radius);
+    let mut rays = Vec::new();
+    while (rays.len() as u32) < count {
+        if rays.len().is_multiple_of(64) {
+            target = centre + half * dice.vector();
+            spread = [0.0, 1e-3, 0.03, 0.3][dice.below(4) as usize] * radius;
+        }
+        let aim = if dice.below(4) == 0 && !mesh.is_empty() && spread > 0.1 * radius {
+            mesh.corners(dice.below(mesh.len() as u32))[0]
+        } else {
+            target + spread * dice.vector()
+        };
+        let ray = Ray::new(origin, aim - origin);
+        if ray.is_valid() {
+            rays.push(ray);
+        }
+    }
+    rays
+}
+
 /// Builds `accel` (`name:key=value…`) over `mesh` for `kernel`, at the predicted n where it has one.
 pub fn built(mesh: &Arc<Mesh>, accel: &str, kernel: &str) -> Box<dyn Accelerator> {
     built_at(mesh, accel, None, kernel)

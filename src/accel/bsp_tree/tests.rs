@@ -4,7 +4,8 @@ use proptest::prelude::*;
 
 use super::super::stack::MAX_DEPTH;
 use super::super::testbed::{
-    assert_agrees, assert_agrees_with, built, geometric, mesh, nasty, ray_count, rays, soup, sphere,
+    assert_agrees, assert_agrees_with, built, geometric, mesh, nasty, pencil, ray_count, rays,
+    soup, sphere,
 };
 use super::super::{Counts, Structure, StructureStats};
 use super::*;
@@ -26,6 +27,10 @@ fn nasty_meshes_are_answered_as_by_brute_force() {
         let rays = rays(&mesh, ray_count(&mesh), 7);
         assert_agrees(name, &mesh, "bsp-tree", &rays);
         assert_agrees_with("exact", name, &mesh, ("bsp-tree", None), &rays, 0);
+        for seed in 0..4 {
+            let pencil = pencil(&mesh, ray_count(&mesh), seed);
+            assert_agrees(name, &mesh, "bsp-tree", &pencil);
+        }
     }
 }
 

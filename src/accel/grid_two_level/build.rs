@@ -17,7 +17,7 @@ const CHUNK: usize = 64;
 
 /// Fine references a coarse one, above which a grid is made half as fine: where triangles cover each other, cells of any
 /// size list them all.
-const CROWDED: usize = 32;
+const CROWDED: usize = 8;
 
 /// What a task builds: the grids of its coarse cells, whose first cells and blocks count from 0.
 #[derive(Default)]

@@ -20,7 +20,9 @@ fn nasty_meshes_are_answered_as_by_brute_force() {
             "grid-2level:density=0.3",
             "grid-2level:overlap=bbox",
         ] {
-            for n in [1, 9] {
+            // Ten thousand equal triangles would be listed by every cell of a plane.
+            let fine = if name == "twins" { 2 } else { 9 };
+            for n in [1, fine] {
                 assert_agrees_at(name, &mesh, (accel, Some(n)), &rays, 0);
             }
         }

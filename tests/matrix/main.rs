@@ -88,7 +88,8 @@ fn builds(
     }
     let defaults = choice(Params::defaults(entry.params));
     let resolutions = scene.resolutions.iter().copied().map(Some).chain([None]);
-    builds.chain(resolutions.map(|n| (defaults.clone(), n)))
+    builds
+        .chain(resolutions.map(|n| (defaults.clone(), n)))
         .collect()
 }
 

@@ -14,8 +14,14 @@ use super::super::stack::MAX_DEPTH;
 /// Below this many parts a subtree is grown by one thread.
 const PARALLEL: usize = 1 << 12;
 
-/// Levels: each takes three of the traversal's stack.
-const MOST_LEVELS: u32 = MAX_DEPTH as u32 / 3;
+/// Most levels over so many triangles: a third of the depth that M. Pharr, W. Jakob and G. Humphreys, "Physically Based
+/// Rendering", give a kd-tree, since a level divides three times, and two more for scenes of many scales. Where triangles lie
+/// in one place no division parts them, yet each pays a little along their edges, for ever.
+fn most_levels(triangles: usize) -> u32 {
+    let divisions = 8.0 + 1.3 * (triangles.max(1) as f64).log2();
+    // Each level takes three of the traversal's stack.
+    ((divisions / 3.0).ceil() as u32 + 2).min(MAX_DEPTH as u32 / 3)
+}
 
 /// Divisions in a row that seem not to pay, in the hope for others below that do.
 const MOST_POOR: u32 = 1;
@@ -27,7 +33,7 @@ const FEW: usize = 4;
 pub(super) fn build(mesh: &Mesh) -> (PlaneTree, Vec<u32>) {
     let cell = Cell {
         bounds: mesh.bounds(),
-        level: 0,
+        levels: most_levels(mesh.len()),
         poor: 0,
     };
     let splitter = Splitter { mesh, clip: true };
@@ -38,8 +44,8 @@ pub(super) fn build(mesh: &Mesh) -> (PlaneTree, Vec<u32>) {
 #[derive(Debug, Clone, Copy)]
 struct Cell {
     bounds: Aabb,
-    /// How many are above it.
-    level: u32,
+    /// How often it may still be divided.
+    levels: u32,
     /// Divisions in a row, up to this cell, that seemed not to pay.
     poor: u32,
 }
@@ -104,14 +110,14 @@ impl Cell {
     fn eighth(&self, bounds: Aabb, pays: bool) -> Self {
         Self {
             bounds,
-            level: self.level + 1,
+            levels: self.levels - 1,
             poor: if pays { 0 } else { self.poor + 1 },
         }
     }
 
     /// Where the cell would be divided, if it may be.
     fn middle(&self, parts: usize) -> Option<Middle> {
-        if parts <= FEW || self.level == MOST_LEVELS {
+        if parts <= FEW || self.levels == 0 {
             return None;
         }
         Middle::of(&self.bounds)

@@ -14,14 +14,12 @@ use super::super::stack::MAX_DEPTH;
 /// Below this many parts a subtree is grown by one thread.
 const PARALLEL: usize = 1 << 12;
 
-/// Most levels over so many triangles: a third of the depth that M. Pharr, W. Jakob and G. Humphreys, "Physically Based
-/// Rendering", give a kd-tree, since a level divides three times, and two more for scenes of many scales. Where triangles lie
-/// in one place no division parts them, yet each pays a little along their edges, for ever.
-fn most_levels(triangles: usize) -> u32 {
-    let divisions = 8.0 + 1.3 * (triangles.max(1) as f64).log2();
-    // Each level takes three of the traversal's stack.
-    ((divisions / 3.0).ceil() as u32 + 2).min(MAX_DEPTH as u32 / 3)
-}
+/// Levels: each takes three of the traversal's stack.
+const MOST_LEVELS: u32 = MAX_DEPTH as u32 / 3;
+
+/// References a triangle, on average over any cell: where triangles lie in one place no division parts them, yet each pays a
+/// little along their edges, for ever.
+const MOST_GROWTH: f64 = 16.0;
 
 /// Divisions in a row that seem not to pay, in the hope for others below that do.
 const MOST_POOR: u32 = 1;
@@ -33,7 +31,8 @@ const FEW: usize = 4;
 pub(super) fn build(mesh: &Mesh) -> (PlaneTree, Vec<u32>) {
     let cell = Cell {
         bounds: mesh.bounds(),
-        levels: most_levels(mesh.len()),
+        levels: MOST_LEVELS,
+        growth: MOST_GROWTH,
         poor: 0,
     };
     let splitter = Splitter { mesh, clip: true };
@@ -46,6 +45,8 @@ struct Cell {
     bounds: Aabb,
     /// How often it may still be divided.
     levels: u32,
+    /// How many times its parts its leaves may list.
+    growth: f64,
     /// Divisions in a row, up to this cell, that seemed not to pay.
     poor: u32,
 }
@@ -107,10 +108,11 @@ impl Middle {
 
 impl Cell {
     /// The cell of an eighth.
-    fn eighth(&self, bounds: Aabb, pays: bool) -> Self {
+    fn eighth(&self, bounds: Aabb, pays: bool, growth: f64) -> Self {
         Self {
             bounds,
             levels: self.levels - 1,
+            growth: self.growth / growth,
             poor: if pays { 0 } else { self.poor + 1 },
         }
     }
@@ -145,6 +147,12 @@ fn divided(splitter: Splitter, middle: &Middle, parts: &[Part]) -> Eighths {
     eighths
 }
 
+/// How many times as many references the eighths of a cell of `parts` have.
+fn growth(parts: usize, eighths: &Eighths) -> f64 {
+    let references: usize = eighths.iter().map(Vec::len).sum();
+    (references as f64 / parts as f64).max(1.0)
+}
+
 /// Whether dividing a cell of `parts` seems to pay.
 fn pays(middle: &Middle, parts: usize, eighths: &Eighths) -> bool {
     middle.cost(|number| cost::expected(eighths[number].len())) < cost::leaf(parts)
@@ -169,14 +177,15 @@ fn grow(splitter: Splitter, cell: &Cell, parts: Vec<Part>) -> Grown {
     };
     let eighths = divided(splitter, &middle, &parts);
     let pays = pays(&middle, parts.len(), &eighths);
-    if !pays && cell.poor == MOST_POOR {
+    let growth = growth(parts.len(), &eighths);
+    if growth > cell.growth || (!pays && cell.poor == MOST_POOR) {
         return whole(&parts, true);
     }
     drop(parts);
     let grown: Vec<Grown> = eighths
         .into_par_iter()
         .zip(middle.eighths)
-        .map(|(parts, bounds)| grow(splitter, &cell.eighth(bounds, pays), parts))
+        .map(|(parts, bounds)| grow(splitter, &cell.eighth(bounds, pays, growth), parts))
         .collect();
     joined(&middle, grown)
 }
@@ -223,13 +232,14 @@ fn node(splitter: Splitter, tree: &mut Subtree, cell: &Cell, parts: &[Part]) -> 
     };
     let eighths = divided(splitter, &middle, parts);
     let pays = pays(&middle, parts.len(), &eighths);
-    if !pays && cell.poor == MOST_POOR {
+    let growth = growth(parts.len(), &eighths);
+    if growth > cell.growth || (!pays && cell.poor == MOST_POOR) {
         return (leaf(tree, parts), as_leaf);
     }
     let mark = tree.mark();
     let mut costs = [0.0; 8];
     let mut eighth = |tree: &mut Subtree, number: usize| {
-        let cell = cell.eighth(middle.eighths[number], pays);
+        let cell = cell.eighth(middle.eighths[number], pays, growth);
         let (node, cost) = node(splitter, tree, &cell, &eighths[number]);
         costs[number] = cost;
         node

@@ -29,6 +29,7 @@ use super::{
     Structure, StructureStats, Visitor, finish,
 };
 
+pub(super) mod density;
 mod exhibits;
 pub(super) mod lattice;
 pub(super) mod lists;

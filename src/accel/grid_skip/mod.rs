@@ -25,6 +25,7 @@ use crate::geometry::{Aabb, Ray, Vec3};
 use crate::scene::Mesh;
 
 use super::grid::Settings;
+use super::grid::density::ByDensity;
 use super::grid::lattice::Lattice;
 use super::grid::lists::Lists;
 use super::share::{Shared, Span};

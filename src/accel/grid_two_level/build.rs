@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use crate::scene::Mesh;
 
 use super::super::grid::Settings;
+use super::super::grid::density::ByDensity;
 use super::super::grid::lattice::Lattice;
 use super::super::grid::lists::Lists;
 use super::super::share::{Shared, Span};

@@ -23,6 +23,7 @@ use crate::registry::{ParamKind, ParamSpec};
 use crate::scene::Mesh;
 
 use super::grid::Settings;
+use super::grid::density::ByDensity;
 use super::grid::lattice::{Lattice, Shape};
 use super::grid::walk::Walk;
 use super::share::Span;

@@ -1,11 +1,11 @@
 //! What `grid-2level` will take, and the coarse n that is best, before it is built.
 
-use crate::accel::{MAX_N, Prediction};
 use crate::registry::Params;
 use crate::scene::Mesh;
 
 use super::super::grid::Settings;
-use super::super::grid::predict::{Model, least};
+use super::super::grid::density::ByDensity;
+use super::super::grid::predict::Model;
 use super::super::share::Span;
 use super::Inner;
 
@@ -36,42 +36,20 @@ impl Predictor {
             density: params.number("density").unwrap_or(1.0),
         }
     }
+}
 
-    /// Bytes at `n`, without the triangles.
-    pub fn bytes(&self, n: u32) -> u64 {
+impl ByDensity for Predictor {
+    const DENSITY: f64 = COARSE_DENSITY;
+    const TWICE: f64 = TWICE;
+
+    fn model(&self) -> &Model {
+        &self.model
+    }
+
+    fn bytes(&self, n: u32) -> u64 {
         // Rounded to whole cells an axis, fine grids of few cells have up to twice as many as asked for.
         let each = 4.0 + 2.0 * self.density * size_of::<Span>() as f64;
         let fine = (self.model.references(n) * each).ceil() as u64;
         coarse_bytes(self.model.cells(n)).saturating_add(fine)
-    }
-
-    /// The greatest n up to [`MAX_N`] whose grid takes at most `bytes`; 0 if not even one cell fits.
-    pub fn largest_n(&self, bytes: u64) -> u32 {
-        let fits = |n: &u32| self.bytes(*n) <= bytes;
-        (1..=MAX_N).rev().find(fits).unwrap_or(0)
-    }
-
-    /// Cost of a ray at `n`, in units of the best: a parabola over the logarithm of the density.
-    fn cost(&self, n: u32) -> f64 {
-        let density = self.model.cells(n) as f64 / self.model.triangles().max(1.0);
-        let octaves = (density / COARSE_DENSITY).log2() / 3.0;
-        1.0 + TWICE * octaves * octaves
-    }
-
-    /// The n that costs least, and its plateau.
-    pub fn best(&self) -> (u32, [u32; 2]) {
-        let largest = self.largest_n(self.model.auto_bytes()).max(1);
-        let costs: Vec<f64> = (1..=largest).map(|n| self.cost(n)).collect();
-        least(&costs)
-    }
-
-    /// All that is predicted at `n`.
-    pub fn predict(&self, n: u32) -> Prediction {
-        let (best, plateau) = self.best();
-        Prediction {
-            n: best,
-            plateau,
-            ..self.model.predict(n)
-        }
     }
 }

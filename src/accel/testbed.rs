@@ -173,6 +173,29 @@ pub fn nasty() -> Vec<(&'static str, Arc<Mesh>)> {
     ]
 }
 
+/// That `accel`, without a resolution, answers as brute force does on [`nasty`] meshes: rays of all kinds, with a kernel and
+/// with `exact`, and rays from one origin, which may go together.
+pub fn assert_agrees_on_nasty(accel: &str) {
+    for (name, mesh) in nasty() {
+        let rays = rays(&mesh, ray_count(&mesh), 7);
+        assert_agrees(name, &mesh, accel, &rays);
+        assert_agrees_with("exact", name, &mesh, (accel, None), &rays, 0);
+        for seed in 0..4 {
+            let pencil = pencil(&mesh, ray_count(&mesh), seed);
+            assert_agrees(name, &mesh, accel, &pencil);
+        }
+    }
+}
+
+/// That `build` gives the same on one thread and on five.
+pub fn assert_same_on_threads<T: PartialEq + Send>(build: impl Fn() -> T + Sync) {
+    let on = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        pool.build().expect("a pool").install(&build)
+    };
+    assert!(on(1) == on(5));
+}
+
 /// As many rays as brute force can trace through `mesh` in a unit test.
 pub fn ray_count(mesh: &Mesh) -> u32 {
     (1_000_000 / (mesh.len() as u32 + 1)).clamp(200, 2000)

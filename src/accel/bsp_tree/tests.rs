@@ -4,8 +4,8 @@ use proptest::prelude::*;
 
 use super::super::stack::MAX_DEPTH;
 use super::super::testbed::{
-    assert_agrees, assert_agrees_with, built, geometric, mesh, nasty, pencil, ray_count, rays,
-    soup, sphere,
+    assert_agrees, assert_agrees_on_nasty, assert_agrees_with, assert_same_on_threads, built,
+    geometric, mesh, rays, soup, sphere,
 };
 use super::super::{Counts, Structure, StructureStats};
 use super::*;
@@ -23,25 +23,13 @@ fn stats(mesh: &Mesh) -> StructureStats {
 
 #[test]
 fn nasty_meshes_are_answered_as_by_brute_force() {
-    for (name, mesh) in nasty() {
-        let rays = rays(&mesh, ray_count(&mesh), 7);
-        assert_agrees(name, &mesh, "bsp-tree", &rays);
-        assert_agrees_with("exact", name, &mesh, ("bsp-tree", None), &rays, 0);
-        for seed in 0..4 {
-            let pencil = pencil(&mesh, ray_count(&mesh), seed);
-            assert_agrees(name, &mesh, "bsp-tree", &pencil);
-        }
-    }
+    assert_agrees_on_nasty("bsp-tree");
 }
 
 #[test]
 fn one_thread_and_many_build_the_same_tree() {
     let mesh = mesh(&soup(3000, 0.1, 10));
-    let build = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-        pool.build().expect("a pool").install(|| tree(&mesh))
-    };
-    assert!(build(1) == build(5));
+    assert_same_on_threads(|| tree(&mesh));
 }
 
 #[test]

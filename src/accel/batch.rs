@@ -133,10 +133,7 @@ impl<'a, T: Items, K: Kernel, I: Isa, A: Answer, const OCCLUSION: bool> Rays<'a>
         if packet.gave_up() {
             return None;
         }
-        let answers = &mut self.answers[packet.first..][..packet.len()];
-        for (answer, best) in answers.iter_mut().zip(&packet.best) {
-            *answer = A::of(*best);
-        }
+        packet.answer(|index, best| self.answers[index] = A::of(best));
         Some(packet.work.cost())
     }
 

@@ -9,13 +9,11 @@
 //! that are left repeat the last triangle: its hit is offered again and is not preferred to itself.
 
 use crate::geometry::Ray;
-use crate::geometry::lanes::{
-    InstructionSet, Isa, Lane, LaneMask, LaneRay, LaneVec3, Portable, Task,
-};
-use crate::kernel::Kernel;
+use crate::geometry::lanes::{InstructionSet, Isa, Lane, LaneMask, LaneRay, Portable, Task};
+use crate::kernel::{Kernel, LaneHit};
 use crate::scene::Mesh;
 
-use super::packet::{self, Packet};
+use super::packet::Packet;
 use super::pages;
 use super::query::Query;
 use super::visit::Counter;
@@ -103,15 +101,16 @@ impl Items for Singles {
         query: &mut Query<'_, Self, K, I, C, OCCLUSION>,
         prim: u32,
     ) -> bool {
-        let packed = query.packed;
+        let (packed, prepared) = (query.packed, query.prepared());
         let found = packed
             .kernel
-            .intersect(&query.prepared, &packed.items[prim as usize]);
+            .intersect(&prepared, &packed.items[prim as usize]);
         let Some(hit) = found else {
             query.counter.test(prim, None, false);
             return false;
         };
-        let taken = query.offer(prim, &hit, 0);
+        let bound = || K::t_error_bound(&prepared, &packed.items[prim as usize], hit.t);
+        let taken = query.offer(prim, &hit, 0, bound);
         query.counter.test(prim, Some(hit.t), taken);
         OCCLUSION && taken
     }
@@ -163,18 +162,23 @@ impl Items for Blocks {
         query: &mut Query<'_, Self, K, I, C, OCCLUSION>,
         item: u32,
     ) -> bool {
-        let packed = query.packed;
+        let (packed, prepared) = (query.packed, query.prepared());
         let block = &packed.items[item as usize];
-        let found = packed.kernel.intersect(&query.prepared, &block.triangles);
+        let found = packed.kernel.intersect(&prepared, &block.triangles);
         if C::COUNTS {
             let mut finished = false;
+            let bound = |hit: &LaneHit<LANES, I::X8>, lane| {
+                K::t_error_bound(&prepared, &block.triangles, hit.t).get(lane)
+            };
             let is_repeated = |lane: usize| lane > 0 && block.prims[lane - 1] == block.prims[lane];
             for lane in (0..LANES).filter(|lane| !is_repeated(*lane)) {
                 let prim = block.prims[lane];
                 let hit = found
                     .as_ref()
                     .filter(|hit| hit.mask.bits() >> lane & 1 == 1);
-                let taken = hit.is_some_and(|hit| !finished && query.offer(prim, hit, lane));
+                let taken = hit.is_some_and(|hit| {
+                    !finished && query.offer(prim, hit, lane, || bound(hit, lane))
+                });
                 query
                     .counter
                     .test(prim, hit.map(|hit| hit.t.get(lane)), taken);
@@ -188,10 +192,15 @@ impl Items for Blocks {
         // NaN is left out.
         let near = hit.t.ge(I::X8::splat(query.t_least())) & hit.t.le(I::X8::splat(query.t_most()));
         let mut met = (hit.mask & near).bits();
+        if met == 0 {
+            return false;
+        }
+        let bounds = K::t_error_bound(&prepared, &block.triangles, hit.t);
         while met != 0 {
             let lane = met.trailing_zeros() as usize;
             met &= met - 1;
-            if query.offer(block.prims[lane & (LANES - 1)], &hit, lane) && OCCLUSION {
+            let prim = block.prims[lane & (LANES - 1)];
+            if query.offer(prim, &hit, lane, || bounds.get(lane)) && OCCLUSION {
                 return true;
             }
         }
@@ -205,10 +214,7 @@ impl Items for Blocks {
     ) {
         let packed = packet.packed;
         let block = &packed.items[item as usize];
-        let origin = LaneVec3::<I::X8>::splat(packet.origin());
-        let [a, b, c] = K::corners::<I::X8>(&block.triangles);
-        let corners = [a.minus(origin), b.minus(origin), c.minus(origin)];
-        let mut met = packet::can_hit(&corners, &packet.dirs);
+        let mut met = packet.can_hit(K::corners(&block.triangles));
         let mut last = None;
         while met != 0 {
             let lane = met.trailing_zeros() as usize & (LANES - 1);

@@ -96,8 +96,8 @@ pub trait Structure: Send + Sync + 'static {
     fn trace<'a, R: Rays<'a>>(&self, batch: &mut R, scratch: &mut Self::Scratch) {
         for index in 0..batch.rays().len() {
             let mut visitor = batch.begin(index);
-            let ray = batch.rays()[index];
-            self.lead::<R::Isa, _>(&ray, scratch, &mut visitor);
+            let ray = &batch.rays()[index];
+            self.lead::<R::Isa, _>(ray, scratch, &mut visitor);
             batch.finish(index, &visitor);
         }
     }

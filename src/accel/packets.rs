@@ -4,9 +4,11 @@
 //! triangles are smaller than the packet, its rays test each other's triangles, and it collapses: then it gives up, its
 //! rays go alone, and so do others after it. What it cost decides how many rays the next one has.
 
+use std::marker::PhantomData;
 use std::ops::Range;
 
 use crate::geometry::Ray;
+use crate::geometry::lanes::{Isa, Task};
 
 use super::packet::{MOST, VECTOR};
 use super::{Rays, Structure};
@@ -74,11 +76,36 @@ pub(super) fn trace<'a, S: Together, R: Rays<'a>>(
             alone.end = count.min(start + ALONE);
         }
         start = alone.end;
-        for index in alone {
-            let mut visitor = batch.begin(index);
-            let ray = batch.rays()[index];
-            structure.traverse::<R::Isa, _>(&ray, scratch, &mut visitor);
-            batch.finish(index, &visitor);
+        R::Isa::enter(Alone {
+            structure,
+            batch,
+            scratch,
+            range: alone,
+            lifetime: PhantomData,
+        });
+    }
+}
+
+/// Rays that go one after another, in a function of their own: within a larger one the compiler keeps less in registers.
+struct Alone<'t, 'a, S: Structure, R: Rays<'a>> {
+    structure: &'t S,
+    batch: &'t mut R,
+    scratch: &'t mut S::Scratch,
+    range: Range<usize>,
+    lifetime: PhantomData<&'a ()>,
+}
+
+impl<'a, S: Structure, R: Rays<'a>> Task for Alone<'_, 'a, S, R> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<I: Isa>(self) {
+        for index in self.range {
+            let mut visitor = self.batch.begin(index);
+            let ray = &self.batch.rays()[index];
+            self.structure
+                .traverse::<R::Isa, _>(ray, self.scratch, &mut visitor);
+            self.batch.finish(index, &visitor);
         }
     }
 }

@@ -19,7 +19,8 @@ pub struct Packed<T: Items, K: Kernel> {
 pub struct Query<'a, T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool> {
     pub packed: &'a Packed<T, K>,
     pub ray: &'a Ray,
-    pub prepared: T::Prepared<K, I>,
+    /// Made when the first item is tested: many rays meet none.
+    prepared: Option<T::Prepared<K, I>>,
     /// The answer so far.
     pub best: Hit,
     limit: f32,
@@ -34,13 +35,23 @@ impl<'a, T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool>
     #[inline(always)]
     pub fn new(packed: &'a Packed<T, K>, ray: &'a Ray, counter: C) -> Self {
         Self {
-            prepared: T::prepare::<K, I>(&packed.kernel, ray),
+            prepared: None,
             packed,
             ray,
             best: Hit::MISS,
             limit: ray.t_max,
             counts: [f32::NEG_INFINITY, f32::INFINITY],
             counter,
+        }
+    }
+
+    /// The ray in the kernel's form.
+    #[inline(always)]
+    pub fn prepared(&mut self) -> T::Prepared<K, I> {
+        let (kernel, ray) = (&self.packed.kernel, self.ray);
+        match self.prepared {
+            Some(prepared) => prepared,
+            None => *self.prepared.insert(T::prepare::<K, I>(kernel, ray)),
         }
     }
 
@@ -63,13 +74,14 @@ impl<'a, T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool>
     }
 
     /// Takes the hit of `lane` if it is nearer, or equally near with a lower index; for occlusion any within the interval.
-    /// Whether it was taken.
+    /// Whether it was taken. `bound`: see [`take`].
     #[inline(always)]
     pub fn offer<const W: usize, L: Lane<W>>(
         &mut self,
         prim: u32,
         hit: &LaneHit<W, L>,
         lane: usize,
+        bound: impl FnOnce() -> f32,
     ) -> bool {
         let hit = Hit {
             t: hit.t.get(lane),
@@ -83,18 +95,20 @@ impl<'a, T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool>
         }
         let Packed { kernel, mesh, .. } = self.packed;
         let (best, limit) = (&mut self.best, &mut self.limit);
-        take::<K, OCCLUSION>(kernel, mesh, self.ray, hit, best, limit)
+        take::<K, OCCLUSION>(kernel, mesh, self.ray, hit, bound, best, limit)
     }
 }
 
 /// Puts `hit` into `best` if it is to be preferred, and lowers `limit` accordingly; for occlusion to the least, since
-/// nothing more can change the answer. Whether it did.
+/// nothing more can change the answer. Whether it did. `bound` is one on the error of the hit's `t`; infinite where it is not
+/// known.
 #[inline(always)]
 pub(super) fn take<K: Kernel, const OCCLUSION: bool>(
     kernel: &K,
     mesh: &Mesh,
     ray: &Ray,
     hit: Hit,
+    bound: impl FnOnce() -> f32,
     best: &mut Hit,
     limit: &mut f32,
 ) -> bool {
@@ -108,11 +122,21 @@ pub(super) fn take<K: Kernel, const OCCLUSION: bool>(
     }
     if kernel.nearer(mesh, ray, &hit, best) {
         *best = hit;
-        let error = kernel.t_error(ray, &mesh.corners(hit.prim), hit.t);
+        let mut error = bound();
+        if error == f32::INFINITY {
+            error = t_error(kernel, mesh, ray, &hit);
+        }
         *limit = limit.min(hit.t + error);
         return true;
     }
     false
+}
+
+/// A bound on the error of a hit's `t`, where the quick one is not known.
+#[cold]
+#[inline(never)]
+pub(super) fn t_error<K: Kernel>(kernel: &K, mesh: &Mesh, ray: &Ray, hit: &Hit) -> f32 {
+    kernel.t_error(ray, &mesh.corners(hit.prim), hit.t)
 }
 
 /// A test that is compiled for the query's instruction set.
@@ -136,6 +160,7 @@ impl<T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool> Visitor
     for Query<'_, T, K, I, C, OCCLUSION>
 {
     const WATCHED: bool = C::COUNTS;
+    const ORDERED: bool = !OCCLUSION;
 
     #[inline(always)]
     fn step(&mut self, place: u64, leaf: bool, references: u32, entry: f64, exit: f64) {

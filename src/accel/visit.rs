@@ -6,6 +6,9 @@ pub trait Visitor {
     /// Whether anyone looks at what [`Visitor::step`] is told; where not, computing it can be spared.
     const WATCHED: bool;
 
+    /// Whether near places should come before far ones: not where any hit will do, and ordering costs more than it saves.
+    const ORDERED: bool = true;
+
     /// A cell or node was entered; `entry` and `exit` are the ray's `t` there, `references` is how many triangles it
     /// lists (0 for an interior node) and `leaf` whether it can list any.
     fn step(&mut self, place: u64, leaf: bool, references: u32, entry: f64, exit: f64);

@@ -1,7 +1,8 @@
 //! Lanes: a kernel's formula is written once over [`Lane`] and runs on one `f32` or on `W` of them.
 //!
 //! Every operation is the IEEE one, in the order written; only [`Lane::mul_add`] fuses a multiplication with an addition,
-//! where a formula says so. So a formula gives the same bits in every lane width and on every instruction set.
+//! where a formula says so, and [`Lane::mul_sub_freely`] where it is quicker. So a formula without the latter gives the same
+//! bits in every lane width and on every instruction set.
 //!
 //! Source: the trait follows the shape of the `Vector` trait of the memchr crate (one trait, one small type a width).
 //! Differs: masks are values of their own type, so that the scalar form compiles to plain branches.
@@ -62,6 +63,13 @@ pub trait Lane<const W: usize>:
     fn from_fn(number: impl FnMut(usize) -> f32) -> Self;
     /// The number in a lane below `N`.
     fn get(self, lane: usize) -> f32;
+    /// Writes all numbers to the front of `room`, which holds as many.
+    #[inline(always)]
+    fn write(self, room: &mut [f32]) {
+        for (lane, number) in room.iter_mut().enumerate().take(Self::N) {
+            *number = self.get(lane);
+        }
+    }
     /// `self` where it is greater, else `other`; so `other` where either is NaN.
     #[must_use]
     fn max(self, other: Self) -> Self;
@@ -86,6 +94,13 @@ pub trait Lane<const W: usize>:
     /// `self·factor + term`, rounded once on every instruction set; [`Portable`] lanes call a function for each number.
     #[must_use]
     fn mul_add(self, factor: Self, term: Self) -> Self;
+    /// `self·factor − term`, rounded once or twice, whatever is quicker here: for bounds, which need not be the same
+    /// everywhere.
+    #[must_use]
+    #[inline(always)]
+    fn mul_sub_freely(self, factor: Self, term: Self) -> Self {
+        self * factor - term
+    }
     /// Absolute value.
     #[must_use]
     fn abs(self) -> Self;

@@ -7,6 +7,7 @@
 //! **Source:** N. Higham, "Accuracy and Stability of Numerical Algorithms", §3.1; M. Pharr, W. Jakob and G. Humphreys,
 //! "Physically Based Rendering", 4th edition, §6.8.
 
+use crate::geometry::lanes::Lane;
 use crate::geometry::{DVec3, Vec3};
 
 /// Most that one `f32` product or quotient loses by underflow: half the least subnormal, doubled for safety.
@@ -20,6 +21,33 @@ pub(super) const HUGE: f64 = 1e37;
 pub(super) const fn gamma(n: u32) -> f64 {
     let nu = n as f64 * 5.960_464_477_539_063e-8;
     nu / (1.0 - nu)
+}
+
+/// γ(n) for bounds that are computed in `f32` themselves, by no more than 32 operations a factor.
+pub(super) const fn wide_gamma(n: u32) -> f32 {
+    (gamma(n) * (1.0 + 1e-5)) as f32
+}
+
+/// More than underflow takes from the sums and products of a test, whose numbers are below [`LARGE`].
+pub(super) const UNDERFLOW: f32 = 1e-30;
+
+/// Bounds that are computed in `f32` hold for numbers below this: three of them make no infinite product.
+pub(super) const LARGE: f32 = 1e12;
+
+/// The bound `numerator / denominator + rest` for a test whose numbers are at most `largest`; infinite where one of them is
+/// too large, or the denominator may be 0.
+#[inline(always)]
+pub(super) fn bound<const W: usize, L: Lane<W>>(
+    numerator: L,
+    denominator: L,
+    rest: L,
+    largest: L,
+) -> L {
+    let bound = numerator / denominator + rest;
+    let known = denominator.gt(L::splat(UNDERFLOW)) & largest.lt(L::splat(LARGE));
+    // What is no number is not less.
+    let infinite = L::splat(f32::INFINITY);
+    L::select(known & bound.lt(infinite), bound, infinite)
 }
 
 /// Sum of the absolute values of the six products in the determinant of `a`, `b` and `c`.

@@ -115,6 +115,17 @@ pub trait Kernel: Debug + Clone + Send + Sync + 'static {
     /// Asked once an accepted hit, not once a test. May be infinite, never NaN.
     fn t_error(&self, ray: &Ray, corners: &[Vec3; 3], t: f32) -> f32;
 
+    /// A bound as that of [`Kernel::t_error`], for the hits of each lane: quickly found from what the test reads, and larger;
+    /// infinite where it does not know, as in lanes that are not hit.
+    #[inline(always)]
+    fn t_error_bound<const W: usize, L: Lane<W>>(
+        _: &Self::Prepared<W, L>,
+        _triangles: &Self::Packed<W>,
+        _t: L,
+    ) -> L {
+        L::splat(f32::INFINITY)
+    }
+
     /// Whether `hit`, which this kernel found on the ray's line, lies within the ray's interval. Both ends belong to it.
     #[inline(always)]
     fn within(&self, _: &Mesh, ray: &Ray, hit: &Hit) -> bool {

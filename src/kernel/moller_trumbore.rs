@@ -69,6 +69,12 @@ pub struct Packed<const W: usize> {
     e2: [[f32; W]; 3],
 }
 
+/// Sum of the absolute values of the components.
+#[inline(always)]
+fn size<const W: usize, L: Lane<W>>(v: LaneVec3<L>) -> L {
+    v.x.abs() + v.y.abs() + v.z.abs()
+}
+
 impl<const EPS: bool> Kernel for MollerTrumbore<EPS> {
     type Packed<const W: usize> = Packed<W>;
     type Prepared<const W: usize, L: Lane<W>> = LaneRay<L>;
@@ -143,6 +149,21 @@ impl<const EPS: bool> Kernel for MollerTrumbore<EPS> {
             u,
             v,
         })
+    }
+
+    #[inline(always)]
+    fn t_error_bound<const W: usize, L: Lane<W>>(ray: &LaneRay<L>, tri: &Packed<W>, t: L) -> L {
+        let (e1, e2) = (LaneVec3::load(&tri.e1), LaneVec3::load(&tri.e2));
+        let from = ray.origin.minus(LaneVec3::load(&tri.v0));
+        let (a, b, c, dir) = (size(from), size(e1), size(e2), size(ray.dir));
+        // The permanents of `t_error` are at most products of sums.
+        let (edges, t) = (b * c, t.abs());
+        let underflow = L::splat(error::UNDERFLOW);
+        let det_error = L::splat(error::wide_gamma(7)) * dir * edges + underflow;
+        let numerator = L::splat(error::wide_gamma(8)) * a * edges + underflow + t * det_error;
+        let det = e1.dot(ray.dir.cross(e2)).abs() - det_error;
+        let rounding = L::splat(error::wide_gamma(4)) * t;
+        error::bound(numerator, det, rounding, a + b + (c + dir))
     }
 
     fn t_error(&self, ray: &Ray, corners: &[Vec3; 3], t: f32) -> f32 {

@@ -119,6 +119,11 @@ impl Kernel for Pbrt {
         Some(LaneHit { mask, ..hit })
     }
 
+    #[inline(always)]
+    fn t_error_bound<const W: usize, L: Lane<W>>(ray: &Prepared<L>, tri: &Corners<W>, t: L) -> L {
+        shear::t_error_bound::<W, L, Self>(ray, tri, t)
+    }
+
     fn t_error(&self, ray: &Ray, corners: &[Vec3; 3], t: f32) -> f32 {
         // Kahan's differences err by 2u of the result, within the γ(2) of the products that the bound allows.
         shear::t_error(ray, corners, t)

@@ -188,6 +188,49 @@ impl<L: Copy, M> Sheared<L, M> {
     }
 }
 
+/// Greatest absolute value of three.
+#[inline(always)]
+fn largest<const W: usize, L: Lane<W>>(a: L, b: L, c: L) -> L {
+    a.abs().max(b.abs()).max(c.abs())
+}
+
+/// The bound of [`t_error`] from what was rounded, so a little larger, for hits of each lane.
+#[inline(always)]
+pub(super) fn t_error_bound<const W: usize, L: Lane<W>, E: Edge>(
+    ray: &Prepared<L>,
+    tri: &Corners<W>,
+    t: L,
+) -> L {
+    let [a, b, c] = sheared(ray, tri);
+    let (x, y) = (largest(a.x, b.x, c.x), largest(a.y, b.y, c.y));
+    let reach = largest(a.z, b.z, c.z);
+    let (moved_x, moved_y) = (ray.shear.x.abs() * reach, ray.shear.y.abs() * reach);
+    let (underflow, two) = (L::splat(error::UNDERFLOW), L::splat(2.0));
+    // The corners before they were sheared are at most as far as those after, and moved as far.
+    let gamma5 = L::splat(error::wide_gamma(5));
+    let dx = gamma5 * (x + two * moved_x) + underflow;
+    let dy = gamma5 * (y + two * moved_y) + underflow;
+    let (x, y) = (x + dx, y + dy);
+    let de = two * (L::splat(error::wide_gamma(2)) * x * y + dx * y + dy * x) + underflow;
+    let (az, bz, cz) = (ray.shear.z * a.z, ray.shear.z * b.z, ray.shear.z * c.z);
+    let z = largest(az, bz, cz);
+    let dz = L::splat(error::wide_gamma(12)) * z + underflow * (reach + L::splat(1.0));
+    let spread = (az - t).abs() + (bz - t).abs() + (cz - t).abs() + L::splat(3.0) * dz;
+    // As `test` computes it.
+    let det =
+        E::edge(c.x, b.y, c.y, b.x) + E::edge(a.x, c.y, a.y, c.x) + E::edge(b.x, a.y, b.y, a.x);
+    // The exact one is less by the error of three edges and by roundings; `t_error` takes three more.
+    let rest = det.abs() * L::splat(1.0 - 4.0 * f32::EPSILON) - L::splat(6.0) * de;
+    let numerator = de * spread + dz * rest + underflow * (z + L::splat(1.0));
+    let rounding = L::splat(error::wide_gamma(2)) * t.abs();
+    error::bound(
+        numerator,
+        rest - L::splat(3.0) * de,
+        rounding,
+        x + y + (z + reach) + (moved_x + moved_y),
+    )
+}
+
 /// A bound on the error of `t`, for edge functions that are within γ(2) of the two products' size.
 pub(super) fn t_error(ray: &Ray, corners: &[Vec3; 3], t: f32) -> f32 {
     let [kx, ky, kz] = frame(ray.dir);

@@ -100,6 +100,11 @@ impl<const FUSED: bool> Kernel for Woop<FUSED> {
         Some(shear::test::<W, L, Self>(ray, tri)?.hit())
     }
 
+    #[inline(always)]
+    fn t_error_bound<const W: usize, L: Lane<W>>(ray: &Prepared<L>, tri: &Corners<W>, t: L) -> L {
+        shear::t_error_bound::<W, L, Self>(ray, tri, t)
+    }
+
     fn t_error(&self, ray: &Ray, corners: &[Vec3; 3], t: f32) -> f32 {
         shear::t_error(ray, corners, t)
     }

@@ -15,6 +15,7 @@ use crate::scene::Mesh;
 use super::super::bvh::{BinaryTree, Node as BinaryNode};
 use super::super::items::{LANES, fill};
 use super::super::pages;
+use super::super::slab::Scene;
 use super::{BvhWide, Child, Node};
 
 /// Cost of visiting a node.
@@ -140,7 +141,7 @@ impl BvhWide {
         let wide = Self {
             nodes: collapse.wide,
             root,
-            bounds: mesh.bounds(),
+            scene: Scene::new(mesh.bounds()),
             filled: collapse.filled,
             depth: collapse.depth,
             way: None,

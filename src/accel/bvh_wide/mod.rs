@@ -25,7 +25,7 @@ use crate::scene::Mesh;
 
 use super::bvh::{Build, binary};
 use super::packets;
-use super::slab::WideCorners;
+use super::slab::{Scene, WideCorners};
 use super::traced::finish_in_order;
 use super::{AcceleratorEntry, Blocks, Rays, Structure, StructureStats, Visitor};
 
@@ -114,7 +114,7 @@ struct Node {
 pub struct BvhWide {
     nodes: Vec<Node>,
     root: Child,
-    bounds: Aabb,
+    scene: Scene,
     /// Triangles in each block; the rest of its lanes repeat the last.
     filled: Vec<u8>,
     depth: u32,
@@ -134,7 +134,7 @@ impl BvhWide {
 
     /// All children that there are, and the root, each with its box.
     fn children(&self) -> impl Iterator<Item = (Child, Aabb)> {
-        let root = std::iter::once((self.root, self.bounds));
+        let root = std::iter::once((self.root, self.scene.bounds));
         root.chain(self.nodes.iter().flat_map(Node::children))
             .filter(|(child, _)| *child != Child::NONE)
     }

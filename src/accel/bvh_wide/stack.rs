@@ -39,8 +39,35 @@ impl Stacks {
 }
 
 impl Stack {
+    /// Room for eight above the first `waiting`: for children, and for keys.
+    #[inline(always)]
+    fn above(&mut self, waiting: usize) -> Option<(&mut [u32; 8], &mut [f32; 8])> {
+        let places = waiting..waiting + 8;
+        Some((
+            self.children[places.clone()].first_chunk_mut()?,
+            self.keys[places].first_chunk_mut()?,
+        ))
+    }
+
     /// Puts those of `children` whose bit is set in `met` above the first `waiting`, the nearest on top; returns the place
     /// of the nearest.
+    #[inline(always)]
+    pub(super) fn push_ordered<I: Isa>(
+        &mut self,
+        waiting: usize,
+        entries: I::X8,
+        met: u32,
+        children: &[u32; 8],
+    ) -> usize {
+        let Some((above, keys)) = self.above(waiting) else {
+            return waiting;
+        };
+        let positive = entries.max(I::X8::splat(0.0));
+        I::greatest_first(positive, met, children, above, keys);
+        waiting + met.count_ones() as usize - 1
+    }
+
+    /// As [`Stack::push_ordered`], the child in the last lane on top.
     #[inline(always)]
     pub(super) fn push<I: Isa>(
         &mut self,
@@ -49,15 +76,10 @@ impl Stack {
         met: u32,
         children: &[u32; 8],
     ) -> usize {
-        let places = waiting..waiting + 8;
-        let (Some(above), Some(keys)) = (
-            self.children[places.clone()].first_chunk_mut(),
-            self.keys[places].first_chunk_mut(),
-        ) else {
+        let Some((above, keys)) = self.above(waiting) else {
             return waiting;
         };
-        let positive = entries.max(I::X8::splat(0.0));
-        I::greatest_first(positive, met, children, above, keys);
+        I::compress(entries.max(I::X8::splat(0.0)), met, children, above, keys);
         waiting + met.count_ones() as usize - 1
     }
 

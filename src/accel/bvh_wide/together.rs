@@ -19,14 +19,14 @@ impl Together for BvhWide {
         range: Range<usize>,
         stacks: &mut Stacks,
     ) -> Option<u32> {
-        let first = range.start;
-        let bundle = Bundle::new(&batch.rays()[range])?;
-        let slabs = PacketSlabs::<<R::Isa as Isa>::X8>::new(&bundle, &self.bounds)?;
-        let budget = TOO_DEAR * bundle.rays.len() as u32;
-        let mut packet = batch.begin_packet(&bundle, first, budget)?;
+        let (first, rays) = (range.start, &batch.rays()[range]);
+        let budget = TOO_DEAR * rays.len() as u32;
         let [stack] = stacks.first(1) else {
             return None;
         };
+        let bundle = Bundle::new(rays)?;
+        let slabs = PacketSlabs::<<R::Isa as Isa>::X8>::new(&bundle, &self.scene.bounds)?;
+        let mut packet = batch.begin_packet(&bundle, first, budget)?;
         let mut walk = Walk::<R::Isa, _>::along(slabs, self, 0.0);
         while walk.step(self, stack, &mut packet) {}
         batch.finish_packet(&packet)

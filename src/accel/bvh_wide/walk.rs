@@ -11,7 +11,7 @@ use super::stack::Stack;
 use super::{BvhWide, Child};
 
 /// Where a ray, or a packet of them, is.
-pub(super) struct Walk<I: Isa, C = WideSlabRay<<I as Isa>::X8>> {
+pub(super) struct Walk<I: Isa, C = WideSlabRay> {
     slabs: C,
     lanes: PhantomData<I>,
     /// What is visited next.
@@ -26,7 +26,7 @@ impl<I: Isa> Walk<I> {
     /// Of a ray, before the root.
     #[inline(always)]
     pub fn new(tree: &BvhWide, ray: &Ray) -> Self {
-        Self::along(WideSlabRay::new(ray, &tree.bounds), tree, ray.t_min)
+        Self::along(WideSlabRay::new::<I::X8>(ray, &tree.scene), tree, ray.t_min)
     }
 }
 
@@ -67,24 +67,30 @@ impl<I: Isa, C: Clip<I::X8>> Walk<I, C> {
                         self.entry = entries.get(lane);
                     }
                 } else {
-                    self.waiting = stack.push::<I>(self.waiting, entries, met, &node.children);
+                    let put = if V::ORDERED {
+                        Stack::push_ordered::<I>
+                    } else {
+                        Stack::push::<I>
+                    };
+                    self.waiting = put(stack, self.waiting, entries, met, &node.children);
                     (self.next, self.entry) = stack.at(self.waiting);
                 }
                 return true;
             }
         }
-        self.pop(stack, visitor.t_limit())
+        self.pop::<V>(stack, visitor.t_limit())
     }
 
     /// Takes the nearest child that waits and begins at `limit` or before; those beyond it are dropped. False if none does.
+    /// Where any hit will do the limit stays where it was when they were met.
     #[inline(always)]
-    fn pop(&mut self, stack: &Stack, limit: f32) -> bool {
+    fn pop<V: Visitor>(&mut self, stack: &Stack, limit: f32) -> bool {
         // Keys are entries, but not less than 0.
         let limit = limit.max(0.0);
         while self.waiting > 0 {
             self.waiting -= 1;
             (self.next, self.entry) = stack.at(self.waiting);
-            if self.entry <= limit {
+            if !V::ORDERED || self.entry <= limit {
                 return true;
             }
         }

@@ -39,7 +39,7 @@ impl Way {
 
 /// A tree of this size stays in the caches near a core, where taking turns costs more than it hides. Measured on bunny
 /// (5 MB) and smaller meshes.
-const NEAR_CACHES: usize = 3 << 20;
+const NEAR_CACHES: usize = 24 << 20;
 
 /// Neighbours whose directions are closer than this (the cosine) find in the caches what the one before left there.
 const COHERENT: f32 = 0.9;

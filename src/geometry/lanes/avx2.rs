@@ -11,11 +11,11 @@ use std::arch::x86_64::{
     __m256, __m256i, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_add_epi32, _mm256_add_ps,
     _mm256_and_ps, _mm256_and_si256, _mm256_andnot_ps, _mm256_blend_epi32, _mm256_blendv_ps,
     _mm256_castps_si256, _mm256_castsi256_ps, _mm256_cmp_ps, _mm256_div_ps, _mm256_fmadd_ps,
-    _mm256_loadu_ps, _mm256_loadu_si256, _mm256_max_epu32, _mm256_max_ps, _mm256_min_epu32,
-    _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_or_ps, _mm256_or_si256,
-    _mm256_permutevar8x32_epi32, _mm256_set1_epi32, _mm256_set1_ps, _mm256_setr_epi32,
-    _mm256_sllv_epi32, _mm256_sqrt_ps, _mm256_srai_epi32, _mm256_storeu_ps, _mm256_storeu_si256,
-    _mm256_sub_epi32, _mm256_sub_ps, _mm256_xor_ps,
+    _mm256_fmsub_ps, _mm256_loadu_ps, _mm256_loadu_si256, _mm256_max_epu32, _mm256_max_ps,
+    _mm256_min_epu32, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_or_ps,
+    _mm256_or_si256, _mm256_permutevar8x32_epi32, _mm256_set1_epi32, _mm256_set1_ps,
+    _mm256_setr_epi32, _mm256_sllv_epi32, _mm256_sqrt_ps, _mm256_srai_epi32, _mm256_storeu_ps,
+    _mm256_storeu_si256, _mm256_sub_epi32, _mm256_sub_ps, _mm256_xor_ps,
 };
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -101,6 +101,13 @@ impl Lane<8> for F32x8 {
         all[lane & 7]
     }
     #[inline(always)]
+    fn write(self, room: &mut [f32]) {
+        if let Some(room) = room.first_chunk_mut::<8>() {
+            // SAFETY: as above; there is room for eight numbers.
+            unsafe { _mm256_storeu_ps(room.as_mut_ptr(), self.0) };
+        }
+    }
+    #[inline(always)]
     fn max(self, other: Self) -> Self {
         // SAFETY: as above.
         Self(unsafe { _mm256_max_ps(self.0, other.0) })
@@ -114,6 +121,11 @@ impl Lane<8> for F32x8 {
     fn mul_add(self, factor: Self, term: Self) -> Self {
         // SAFETY: FMA was detected with AVX2.
         Self(unsafe { _mm256_fmadd_ps(self.0, factor.0, term.0) })
+    }
+    #[inline(always)]
+    fn mul_sub_freely(self, factor: Self, term: Self) -> Self {
+        // SAFETY: FMA was detected with AVX2.
+        Self(unsafe { _mm256_fmsub_ps(self.0, factor.0, term.0) })
     }
     #[inline(always)]
     fn abs(self) -> Self {

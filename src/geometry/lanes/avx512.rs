@@ -11,15 +11,15 @@ use std::arch::x86_64::{
     __m128i, __m256, __m256i, __m512, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm_mask_blend_epi32,
     _mm_max_epu32, _mm_min_epu32, _mm_shuffle_epi32, _mm_storeu_si128, _mm256_add_ps,
     _mm256_and_si256, _mm256_andnot_ps, _mm256_castps_si256, _mm256_castsi128_si256,
-    _mm256_castsi256_si128, _mm256_cmp_ps_mask, _mm256_div_ps, _mm256_fmadd_ps, _mm256_loadu_ps,
-    _mm256_loadu_si256, _mm256_mask_blend_epi32, _mm256_mask_blend_ps, _mm256_maskz_compress_epi32,
-    _mm256_max_epu32, _mm256_max_ps, _mm256_min_epu32, _mm256_min_ps, _mm256_mul_ps,
-    _mm256_or_si256, _mm256_permutevar8x32_epi32, _mm256_set1_epi32, _mm256_set1_ps,
-    _mm256_setr_epi32, _mm256_sqrt_ps, _mm256_storeu_ps, _mm256_storeu_si256, _mm256_sub_ps,
-    _mm256_xor_ps, _mm512_add_ps, _mm512_andnot_ps, _mm512_cmp_ps_mask, _mm512_div_ps,
-    _mm512_fmadd_ps, _mm512_loadu_ps, _mm512_mask_blend_ps, _mm512_max_ps, _mm512_min_ps,
-    _mm512_mul_ps, _mm512_reduce_min_ps, _mm512_set1_ps, _mm512_sqrt_ps, _mm512_storeu_ps,
-    _mm512_sub_ps, _mm512_xor_ps,
+    _mm256_castsi256_si128, _mm256_cmp_ps_mask, _mm256_div_ps, _mm256_fmadd_ps, _mm256_fmsub_ps,
+    _mm256_loadu_ps, _mm256_loadu_si256, _mm256_mask_blend_epi32, _mm256_mask_blend_ps,
+    _mm256_maskz_compress_epi32, _mm256_maskz_compress_ps, _mm256_max_epu32, _mm256_max_ps,
+    _mm256_min_epu32, _mm256_min_ps, _mm256_mul_ps, _mm256_or_si256, _mm256_permutevar8x32_epi32,
+    _mm256_set1_epi32, _mm256_set1_ps, _mm256_setr_epi32, _mm256_sqrt_ps, _mm256_storeu_ps,
+    _mm256_storeu_si256, _mm256_sub_ps, _mm256_xor_ps, _mm512_add_ps, _mm512_andnot_ps,
+    _mm512_cmp_ps_mask, _mm512_div_ps, _mm512_fmadd_ps, _mm512_fmsub_ps, _mm512_loadu_ps,
+    _mm512_mask_blend_ps, _mm512_max_ps, _mm512_min_ps, _mm512_mul_ps, _mm512_reduce_min_ps,
+    _mm512_set1_ps, _mm512_sqrt_ps, _mm512_storeu_ps, _mm512_sub_ps, _mm512_xor_ps,
 };
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -30,7 +30,7 @@ macro_rules! lanes {
     (
         $numbers:ident($register:ty), $mask:ident($bits:ty), $n:literal, triangles $w:literal,
         load $load:expr, $set1:ident $loadu:ident $storeu:ident $add:ident $sub:ident $mul:ident $div:ident
-        $fma:ident $max:ident $min:ident $xor:ident $andnot:ident $sqrt:ident $blend:ident $cmp:ident
+        $fma:ident $fms:ident $max:ident $min:ident $xor:ident $andnot:ident $sqrt:ident $blend:ident $cmp:ident
         $(, $least:item)?
     ) => {
         #[doc = concat!(stringify!($n), " `f32`.")]
@@ -119,6 +119,18 @@ macro_rules! lanes {
                 Self(unsafe { $fma(self.0, factor.0, term.0) })
             }
             #[inline(always)]
+            fn mul_sub_freely(self, factor: Self, term: Self) -> Self {
+                // SAFETY: as above.
+                Self(unsafe { $fms(self.0, factor.0, term.0) })
+            }
+            #[inline(always)]
+            fn write(self, room: &mut [f32]) {
+                if let Some(room) = room.first_chunk_mut::<$n>() {
+                    // SAFETY: there is room for all numbers.
+                    unsafe { $storeu(room.as_mut_ptr(), self.0) };
+                }
+            }
+            #[inline(always)]
             fn max(self, other: Self) -> Self {
                 // SAFETY: as above.
                 Self(unsafe { $max(self.0, other.0) })
@@ -178,14 +190,14 @@ lanes!(
     // SAFETY: AVX was detected; eight numbers are there, alignment is not asked for.
     load |xs: &[f32; 8]| F32x8(unsafe { _mm256_loadu_ps(xs.as_ptr()) }),
     _mm256_set1_ps _mm256_loadu_ps _mm256_storeu_ps _mm256_add_ps _mm256_sub_ps _mm256_mul_ps _mm256_div_ps
-    _mm256_fmadd_ps _mm256_max_ps _mm256_min_ps _mm256_xor_ps _mm256_andnot_ps _mm256_sqrt_ps _mm256_mask_blend_ps _mm256_cmp_ps_mask
+    _mm256_fmadd_ps _mm256_fmsub_ps _mm256_max_ps _mm256_min_ps _mm256_xor_ps _mm256_andnot_ps _mm256_sqrt_ps _mm256_mask_blend_ps _mm256_cmp_ps_mask
 );
 
 lanes!(
     F32x16(__m512), Mask16(u16), 16, triangles 1,
     load |xs: &[f32; 1]| F32x16::splat(xs[0]),
     _mm512_set1_ps _mm512_loadu_ps _mm512_storeu_ps _mm512_add_ps _mm512_sub_ps _mm512_mul_ps _mm512_div_ps
-    _mm512_fmadd_ps _mm512_max_ps _mm512_min_ps _mm512_xor_ps _mm512_andnot_ps _mm512_sqrt_ps _mm512_mask_blend_ps _mm512_cmp_ps_mask,
+    _mm512_fmadd_ps _mm512_fmsub_ps _mm512_max_ps _mm512_min_ps _mm512_xor_ps _mm512_andnot_ps _mm512_sqrt_ps _mm512_mask_blend_ps _mm512_cmp_ps_mask,
     #[inline(always)]
     fn least(self) -> f32 {
         // SAFETY: as above.
@@ -226,6 +238,25 @@ pub(super) fn greatest_first(
             _mm256_storeu_si256(sorted_values.as_mut_ptr().cast(), permuted);
             _mm256_storeu_si256(sorted_keys.as_mut_ptr().cast(), sorted);
         }
+    }
+}
+
+/// See [`super::Isa::compress`].
+#[inline(always)]
+pub(super) fn compress(
+    keys: F32x8,
+    met: u32,
+    values: &[u32; 8],
+    compressed_values: &mut [u32; 8],
+    compressed_keys: &mut [f32; 8],
+) {
+    // SAFETY: AVX-512 was detected; loads and stores stay within eight numbers and ask for no alignment.
+    unsafe {
+        let values = _mm256_loadu_si256(values.as_ptr().cast());
+        let values = _mm256_maskz_compress_epi32(met as u8, values);
+        let keys = _mm256_maskz_compress_ps(met as u8, keys.0);
+        _mm256_storeu_si256(compressed_values.as_mut_ptr().cast(), values);
+        _mm256_storeu_ps(compressed_keys.as_mut_ptr(), keys);
     }
 }
 

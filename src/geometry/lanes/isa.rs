@@ -58,6 +58,27 @@ pub trait Isa: Copy + Send + Sync + 'static {
         sorted_values: &mut [u32; 8],
         sorted_keys: &mut [f32; 8],
     );
+
+    /// Writes the `values` and `keys` of the lanes whose bit is set in `met` to the front of the two rooms, in the order of
+    /// the lanes; what lies behind is overwritten with anything.
+    #[inline(always)]
+    fn compress(
+        keys: Self::X8,
+        met: u32,
+        values: &[u32; 8],
+        compressed_values: &mut [u32; 8],
+        compressed_keys: &mut [f32; 8],
+    ) {
+        let mut rest = met;
+        for (value, key) in compressed_values.iter_mut().zip(compressed_keys) {
+            if rest == 0 {
+                break;
+            }
+            let lane = rest.trailing_zeros() as usize & 7;
+            rest &= rest - 1;
+            (*value, *key) = (values[lane], keys.get(lane));
+        }
+    }
 }
 
 /// Lanes in plain Rust, right on every processor.
@@ -160,6 +181,17 @@ impl Isa for Avx512 {
     ) {
         avx512::greatest_first(keys, met, values, sorted_values, sorted_keys);
     }
+
+    #[inline(always)]
+    fn compress(
+        keys: avx512::F32x8,
+        met: u32,
+        values: &[u32; 8],
+        compressed_values: &mut [u32; 8],
+        compressed_keys: &mut [f32; 8],
+    ) {
+        avx512::compress(keys, met, values, compressed_values, compressed_keys);
+    }
 }
 
 /// The instruction sets by name.
@@ -249,6 +281,7 @@ impl Display for InstructionSet {
 /// Compiled for AVX2. Only [`Lane::mul_add`] uses fused multiply-add: the compiler fuses nothing that is written apart.
 #[cfg(all(target_arch = "x86_64", not(debug_assertions)))]
 #[target_feature(enable = "avx2,fma,bmi1")]
+#[inline(never)]
 fn with_avx2<T: Task>(task: T) -> T::Out {
     task.run::<Avx2>()
 }
@@ -256,6 +289,7 @@ fn with_avx2<T: Task>(task: T) -> T::Out {
 /// Compiled for AVX-512.
 #[cfg(all(target_arch = "x86_64", not(debug_assertions)))]
 #[target_feature(enable = "avx2,fma,bmi1,bmi2,popcnt,avx512f,avx512vl,avx512bw,avx512dq")]
+#[inline(never)]
 fn with_avx512<T: Task>(task: T) -> T::Out {
     task.run::<Avx512>()
 }

@@ -72,6 +72,12 @@ impl<L: Lane<8>> Lane<1> for Pair<L> {
         }
     }
     #[inline(always)]
+    fn write(self, room: &mut [f32]) {
+        let (first, second) = room.split_at_mut(8);
+        self.0.write(first);
+        self.1.write(second);
+    }
+    #[inline(always)]
     fn max(self, other: Self) -> Self {
         Self(self.0.max(other.0), self.1.max(other.1))
     }

@@ -307,6 +307,11 @@ impl Kernel for Exact {
         })
     }
 
+    #[inline(always)]
+    fn t_error_bound<const W: usize, L: Lane<W>>(_: &Prepared<L>, _: &Packed<W>, t: L) -> L {
+        t.abs() * L::splat(3.0 * f32::EPSILON) + L::splat(8.0 * f32::from_bits(1))
+    }
+
     fn t_error(&self, _: &Ray, _: &[Vec3; 3], t: f32) -> f32 {
         // Two ulps: the true t is less than one away, and the sum is rounded.
         t.abs() * (2.0 * f32::EPSILON) + 4.0 * f32::from_bits(1)

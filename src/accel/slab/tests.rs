@@ -1,0 +1,216 @@
+use super::super::testbed::Dice;
+use super::*;
+use crate::geometry::Vec3;
+
+/// A ray and a box of whole numbers, so that all of it can be judged exactly.
+#[derive(Debug)]
+struct Case {
+    origin: [i64; 3],
+    dir: [i64; 3],
+    least: [i64; 3],
+    greatest: [i64; 3],
+}
+
+impl Case {
+    /// Whether the ray touches the closed box grown by `grown`, by exact fractions.
+    fn touches(&self, grown: i64) -> bool {
+        // t in [entry, exit], each a fraction with a positive denominator.
+        let mut entry = (0_i128, 1_i128);
+        let mut exit: Option<(i128, i128)> = None;
+        for a in 0..3 {
+            let lo = i128::from(self.least[a] - grown - self.origin[a]);
+            let hi = i128::from(self.greatest[a] + grown - self.origin[a]);
+            let d = i128::from(self.dir[a]);
+            if d == 0 {
+                if lo > 0 || hi < 0 {
+                    return false;
+                }
+                continue;
+            }
+            let (near, far) = if d > 0 { (lo, hi) } else { (-hi, -lo) };
+            let d = d.abs();
+            if near * entry.1 > entry.0 * d {
+                entry = (near, d);
+            }
+            if exit.is_none_or(|e| far * e.1 < e.0 * d) {
+                exit = Some((far, d));
+            }
+        }
+        exit.is_none_or(|exit| entry.0 * exit.1 <= exit.0 * entry.1)
+    }
+
+    /// What the slab test says, with everything scaled by powers of two and zeros of one sign.
+    fn slab(&self, scale: f32, dir_scale: f32, zero: f32) -> bool {
+        let float = |v: [i64; 3], s: f32| Vec3::from(v.map(|x| x as f32 * s));
+        let signed = |x: f32| if x == 0.0 { zero } else { x };
+        let dir = float(self.dir, dir_scale).to_array().map(signed);
+        let ray = Ray::new(float(self.origin, scale), dir.into());
+        let aabb = Aabb {
+            min: float(self.least, scale),
+            max: float(self.greatest, scale),
+        };
+        SlabRay::new(&ray, &aabb)
+            .interval(&corners(aabb), f32::INFINITY)
+            .is_some()
+    }
+
+    fn corner(&self, dice: &mut Dice, a: usize) -> i64 {
+        [self.least[a], self.greatest[a]][dice.below(2) as usize]
+    }
+}
+
+fn number(dice: &mut Dice, reach: u32) -> i64 {
+    i64::from(dice.below(2 * reach + 1)) - i64::from(reach)
+}
+
+fn numbers(dice: &mut Dice, reach: u32) -> [i64; 3] {
+    [0; 3].map(|_| number(dice, reach))
+}
+
+/// 200,000 boxes, some of them flat, each with a ray that `aim` has made from it.
+fn never_missed(seed: u64, aim: impl Fn(&mut Dice, &mut Case)) {
+    let mut dice = Dice::new(seed);
+    let mut touched = 0;
+    for _ in 0..200_000 {
+        let (a, b) = (numbers(&mut dice, 1 << 20), numbers(&mut dice, 1 << 20));
+        let flat = dice.below(16);
+        let mut case = Case {
+            origin: numbers(&mut dice, 1 << 21),
+            dir: numbers(&mut dice, 1 << 10),
+            least: [0, 1, 2].map(|i: usize| a[i].min(b[i])),
+            greatest: [0, 1, 2].map(|i: usize| {
+                if flat >> i & 1 == 1 {
+                    a[i].min(b[i])
+                } else {
+                    a[i].max(b[i])
+                }
+            }),
+        };
+        aim(&mut dice, &mut case);
+        if case.dir == [0; 3] {
+            continue;
+        }
+        let scale = [1.0, 0.001_953_125, 65_536.0][dice.below(3) as usize];
+        let dir_scale = [1.0, 0.001_953_125, 1024.0][dice.below(3) as usize];
+        let zero = [0.0, -0.0][dice.below(2) as usize];
+        let slab = case.slab(scale, dir_scale, zero);
+        if case.touches(0) {
+            touched += 1;
+            assert!(slab, "missed {case:?}");
+        } else if !case.touches(1 << 8) {
+            // The pad is a few millionths of the way: a box that is missed by more is missed here too.
+            assert!(!slab, "phantom {case:?}");
+        }
+    }
+    assert!(touched > 1000, "only {touched} boxes were touched");
+}
+
+#[test]
+fn a_ray_in_a_face_plane_touches_the_box() {
+    never_missed(1, |dice, case| {
+        let a = dice.below(3) as usize;
+        case.dir[a] = 0;
+        case.origin[a] = case.corner(dice, a);
+    });
+}
+
+#[test]
+fn a_ray_through_a_corner_touches_the_box() {
+    never_missed(2, |dice, case| {
+        let steps = i64::from(dice.below(1024));
+        for a in 0..3 {
+            case.origin[a] = case.corner(dice, a) - steps * case.dir[a];
+        }
+    });
+}
+
+#[test]
+fn axis_parallel_rays_are_judged_right() {
+    never_missed(3, |dice, case| {
+        let a = dice.below(3) as usize;
+        case.dir = [0; 3];
+        case.dir[a] = number(dice, 1 << 10);
+        case.origin = [0, 1, 2].map(|i| match dice.below(3) {
+            0 => case.corner(dice, i),
+            1 => number(dice, 1 << 21),
+            _ => i64::midpoint(case.least[i], case.greatest[i]),
+        });
+    });
+}
+
+#[test]
+fn a_nearly_axis_parallel_ray_touches_what_it_grazes() {
+    never_missed(4, |dice, case| {
+        let a = dice.below(3) as usize;
+        case.dir = numbers(dice, 3);
+        case.dir[a] = number(dice, 1 << 20);
+        for i in 0..3 {
+            case.origin[i] = case.corner(dice, i) - case.dir[i];
+        }
+    });
+}
+
+#[test]
+fn any_ray_is_judged_right() {
+    never_missed(5, |_, _| {});
+}
+
+#[test]
+fn the_entry_is_never_late_and_hardly_early() {
+    let mut dice = Dice::new(6);
+    let aabb = Aabb {
+        min: Vec3::splat(-1.5),
+        max: Vec3::splat(1.5),
+    };
+    for _ in 0..10_000 {
+        let from = Vec3::new(-2.5, dice.signed(), dice.signed());
+        let ray = Ray::new(from, Vec3::new(1.0, 0.1 * dice.signed(), 0.0));
+        let (entry, _) = SlabRay::new(&ray, &aabb)
+            .interval(&corners(aabb), f32::INFINITY)
+            .expect("aimed at it");
+        assert!(entry <= 1.0 && entry > 0.999_99, "{entry}");
+    }
+}
+
+#[test]
+fn a_negative_t_min_reaches_what_lies_behind_the_origin() {
+    let aabb = Aabb {
+        min: Vec3::splat(-1.0),
+        max: Vec3::ONE,
+    };
+    let met = |ray: &Ray| {
+        SlabRay::new(ray, &aabb)
+            .interval(&corners(aabb), ray.t_max)
+            .is_some()
+    };
+    for dir in [
+        Vec3::X,
+        Vec3::new(1.0, 1e-9, 0.3),
+        Vec3::new(1.0, -0.3, -0.0),
+    ] {
+        let mut ray = Ray::new(Vec3::X * 3.0, dir);
+        assert!(!met(&ray));
+        ray.t_min = f32::NEG_INFINITY;
+        assert!(met(&ray));
+        ray.t_min = -2.0;
+        assert!(met(&ray), "the face at t = -2 is inside the interval");
+        ray.t_min = -1.9;
+        assert!(!met(&ray));
+    }
+}
+
+#[test]
+fn numbers_at_the_ends_of_the_range_miss_nothing() {
+    for scale in [1e-42, 1e-38, 1e-30, 1e-20, 1e20, 1e30, 1e38] {
+        for dir_scale in [1e-42, 1e-30, 1.0, 1e30, 1e38] {
+            let aabb = Aabb {
+                min: Vec3::splat(-scale),
+                max: Vec3::splat(scale),
+            };
+            let dir = Vec3::new(0.1, -0.1, -1.0) * dir_scale;
+            let ray = Ray::new(Vec3::new(0.0, 0.0, 3.0 * scale), dir);
+            let met = SlabRay::new(&ray, &aabb).interval(&corners(aabb), f32::INFINITY);
+            assert!(met.is_some(), "scene {scale}, direction {dir_scale}");
+        }
+    }
+}

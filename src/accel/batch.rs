@@ -45,6 +45,9 @@ pub trait Rays<'a> {
     /// Asks the memory for an item that will be tested soon.
     fn prefetch(&self, item: u32);
 
+    /// Whether its kernel is worth compiling every way of tracing a batch for: where not, rays go one by one.
+    const WAYS: bool;
+
     /// Whether rays of one origin may go together. Asked before anything that packets need, so that nothing of it is
     /// compiled where they may not.
     const PACKETS: bool;
@@ -109,6 +112,8 @@ impl<'a, T: Items, K: Kernel, I: Isa, A: Answer, const OCCLUSION: bool> Rays<'a>
         let place = self.packed.items.as_ptr().wrapping_add(item as usize);
         prefetch(place, size_of::<T::Item<K>>().div_ceil(64));
     }
+
+    const WAYS: bool = K::PACKETS;
 
     // Rays that ask only whether they are blocked rarely start at one point.
     const PACKETS: bool = K::PACKETS && !OCCLUSION;

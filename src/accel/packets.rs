@@ -34,6 +34,25 @@ pub(super) trait Together: Structure {
         range: Range<usize>,
         scratch: &mut Self::Scratch,
     ) -> Option<u32>;
+
+    /// Traces the rays in `range` without making a packet of them: one after another.
+    #[inline(always)]
+    fn apart<'a, R: Rays<'a>>(
+        &self,
+        batch: &mut R,
+        range: Range<usize>,
+        scratch: &mut Self::Scratch,
+    ) where
+        Self: Sized,
+    {
+        R::Isa::enter(Alone {
+            structure: self,
+            batch,
+            scratch,
+            range,
+            lifetime: PhantomData,
+        });
+    }
 }
 
 /// Whether the rays of a sample start at one point.
@@ -76,13 +95,17 @@ pub(super) fn trace<'a, S: Together, R: Rays<'a>>(
             alone.end = count.min(start + ALONE);
         }
         start = alone.end;
-        R::Isa::enter(Alone {
-            structure,
-            batch,
-            scratch,
-            range: alone,
-            lifetime: PhantomData,
-        });
+        if R::PACKETS && packets {
+            structure.apart(batch, alone, scratch);
+        } else {
+            R::Isa::enter(Alone {
+                structure,
+                batch,
+                scratch,
+                range: alone,
+                lifetime: PhantomData,
+            });
+        }
     }
 }
 

@@ -30,6 +30,7 @@ use super::traced::finish_in_order;
 use super::{AcceleratorEntry, Blocks, Rays, Structure, StructureStats, Visitor};
 
 mod collapse;
+mod hybrid;
 mod interleaved;
 mod stack;
 mod together;
@@ -187,8 +188,15 @@ impl Structure for BvhWide {
 
     #[inline(always)]
     fn trace<'a, R: Rays<'a>>(&self, batch: &mut R, stacks: &mut Stacks) {
-        match self.way.unwrap_or_else(|| way::choose(self, batch.rays())) {
+        match self
+            .way
+            .unwrap_or_else(|| way::choose(self, batch.rays(), !R::Visitor::ORDERED))
+        {
             Way::Interleaved => interleaved::trace(self, batch, stacks),
+            Way::Hybrid => {
+                let all = 0..batch.rays().len();
+                hybrid::trace(self, batch, all, stacks);
+            }
             way => packets::trace(self, batch, stacks, way == Way::Packets),
         }
     }

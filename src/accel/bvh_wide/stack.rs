@@ -4,6 +4,7 @@ use crate::geometry::lanes::{Isa, Lane};
 
 use super::super::stack::MAX_DEPTH;
 use super::Child;
+use super::hybrid::GroupStack;
 
 /// Most children that wait: seven a level, and room for a whole vector behind the last.
 const ROOM: usize = 7 * MAX_DEPTH + 8;
@@ -22,23 +23,38 @@ pub(super) const FLIGHTS: usize = 16;
 
 /// Stacks for the rays that are under way: what a thread needs to traverse a wide tree.
 #[derive(Default)]
-pub struct Stacks(Vec<Stack>);
+pub struct Stacks {
+    single: Vec<Stack>,
+    group: Option<Box<GroupStack>>,
+}
 
 impl Stacks {
     /// The first `count` stacks, made where there are fewer.
     #[inline(always)]
     pub(super) fn first(&mut self, count: usize) -> &mut [Stack] {
-        while self.0.len() < count {
-            self.0.push(Stack {
-                children: [Child::NONE.0; ROOM],
-                keys: [0.0; ROOM],
-            });
+        while self.single.len() < count {
+            self.single.push(Stack::new());
         }
-        &mut self.0[..count]
+        &mut self.single[..count]
+    }
+
+    /// A stack for one ray, and one for a group.
+    pub(super) fn with_group(&mut self) -> (&mut Stack, &mut GroupStack) {
+        if self.single.is_empty() {
+            self.single.push(Stack::new());
+        }
+        (&mut self.single[0], self.group.get_or_insert_default())
     }
 }
 
 impl Stack {
+    fn new() -> Self {
+        Self {
+            children: [Child::NONE.0; ROOM],
+            keys: [0.0; ROOM],
+        }
+    }
+
     /// Room for eight above the first `waiting`: for children, and for keys.
     #[inline(always)]
     fn above(&mut self, waiting: usize) -> Option<(&mut [u32; 8], &mut [f32; 8])> {

@@ -7,6 +7,7 @@ use super::super::packet::Bundle;
 use super::super::packets::{TOO_DEAR, Together};
 use super::super::slab::PacketSlabs;
 use super::BvhWide;
+use super::hybrid;
 use super::stack::Stacks;
 use super::walk::Walk;
 use crate::geometry::lanes::Isa;
@@ -30,5 +31,11 @@ impl Together for BvhWide {
         let mut walk = Walk::<R::Isa, _>::along(slabs, self, 0.0);
         while walk.step(self, stack, &mut packet) {}
         batch.finish_packet(&packet)
+    }
+
+    /// Neighbours have much of their way in common, even where they are no packet.
+    #[inline(always)]
+    fn apart<'a, R: Rays<'a>>(&self, batch: &mut R, range: Range<usize>, stacks: &mut Stacks) {
+        hybrid::trace(self, batch, range, stacks);
     }
 }

@@ -31,6 +31,18 @@ impl<I: Isa> Walk<I> {
 }
 
 impl<I: Isa, C: Clip<I::X8>> Walk<I, C> {
+    /// Of whatever `slabs` stand for, from a place on.
+    #[inline(always)]
+    pub fn from(slabs: C, next: Child) -> Self {
+        Self {
+            slabs,
+            lanes: PhantomData,
+            next,
+            entry: 0.0,
+            waiting: 0,
+        }
+    }
+
     /// Of whatever `slabs` stand for, before the root.
     #[inline(always)]
     pub fn along(slabs: C, tree: &BvhWide, entry: f32) -> Self {

@@ -13,6 +13,8 @@ pub(super) enum Way {
     Single,
     /// Rays from one origin go together.
     Packets,
+    /// Sixteen rays at once where they visit the same nodes.
+    Hybrid,
     /// Several rays take turns, each while the memory fetches for the others.
     Interleaved,
 }
@@ -22,7 +24,7 @@ impl Way {
     pub const PARAM: ParamSpec = ParamSpec {
         name: "way",
         about: "How a batch of rays is traced; `auto` looks at the rays and the tree.",
-        kind: ParamKind::Choice(&["auto", "single", "interleaved", "packets"]),
+        kind: ParamKind::Choice(&["auto", "single", "hybrid", "interleaved", "packets"]),
         default: "auto",
     };
 
@@ -31,6 +33,7 @@ impl Way {
         match params.text("way") {
             "single" => Some(Self::Single),
             "packets" => Some(Self::Packets),
+            "hybrid" => Some(Self::Hybrid),
             "interleaved" => Some(Self::Interleaved),
             _ => None,
         }
@@ -38,20 +41,25 @@ impl Way {
 }
 
 /// A tree of this size stays in the caches near a core, where taking turns costs more than it hides. Measured on bunny
-/// (5 MB) and smaller meshes.
+/// (5 MB), armadillo and sponza (20 MB), where it lost up to a fifth, and on two meshes of 55 MB, where it won a sixth to a
+/// half.
 const NEAR_CACHES: usize = 24 << 20;
 
 /// Neighbours whose directions are closer than this (the cosine) find in the caches what the one before left there.
 const COHERENT: f32 = 0.9;
 
-/// Chooses the way for `rays`.
-pub(super) fn choose(tree: &BvhWide, rays: &[Ray]) -> Way {
+/// Chooses the way for `rays`, of which any hit is asked, or the nearest.
+pub(super) fn choose(tree: &BvhWide, rays: &[Ray], any_hit: bool) -> Way {
     if share_origin(rays) {
         return Way::Packets;
     }
+    let coherent = are_coherent(rays);
+    if any_hit && coherent {
+        return Way::Hybrid;
+    }
     // A block is as large as a node and a quarter.
     let bytes = (tree.nodes.len() + tree.filled.len() * 5 / 4) * size_of::<Node>();
-    if bytes > NEAR_CACHES && !are_coherent(rays) {
+    if bytes > NEAR_CACHES && !coherent {
         Way::Interleaved
     } else {
         Way::Single

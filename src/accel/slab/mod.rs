@@ -19,11 +19,13 @@
 use crate::geometry::{Aabb, Ray};
 
 mod pencil;
+mod rays;
 #[cfg(test)]
 mod tests;
 mod wide;
 
 pub(super) use pencil::{PacketSlabs, Pencil};
+pub(super) use rays::SlabRays;
 pub(super) use wide::{Clip, Scene, WideCorners, WideSlabRay};
 
 /// Half-width of the cone in units of the way along the ray's longest axis: 8ε = 16u. The test itself needs 4u.

@@ -28,22 +28,22 @@ pub(in super::super) struct Scene {
     /// Its box.
     pub bounds: Aabb,
     /// The largest absolute value of a coordinate.
-    largest: f32,
+    pub(super) largest: f32,
 }
 
 /// A ray prepared for boxes within one scene, eight at a time: numbers, which are spread over lanes where they are used.
 #[derive(Debug, Clone, Copy)]
 pub(in super::super) struct WideSlabRay {
     /// For the near planes of x, y and z, and from [`FAR`] on for the far ones.
-    inverse: [f32; 8],
-    offset: [f32; 8],
+    pub(super) inverse: [f32; 8],
+    pub(super) offset: [f32; 8],
     /// Which side the ray comes from: 1 where its direction is negative.
-    near: [usize; 3],
-    t_min: f32,
+    pub(super) near: [usize; 3],
+    pub(super) t_min: f32,
 }
 
 /// Where what belongs to far planes begins.
-const FAR: usize = 4;
+pub(super) const FAR: usize = 4;
 
 /// For near planes and far ones: which way their inverses and offsets are moved.
 const MOVE: [f32; 8] = [-1.0, -1.0, -1.0, -1.0, 1.0, 1.0, 1.0, 1.0];
@@ -53,14 +53,14 @@ const SQUARE: [f32; 8] = [0.0, 0.0, 0.0, 0.0, 2.0, 2.0, 2.0, 2.0];
 
 /// Pad of an offset in units of itself: 4u. Its own rounding takes one, that of the pad another, and that of the product
 /// with the plane, where it is not fused, a third and what of it concerns `t` is the cone's.
-const OFFSET_PAD: f32 = 2.0 * f32::EPSILON;
+pub(super) const OFFSET_PAD: f32 = 2.0 * f32::EPSILON;
 
 /// An inverse, in units of that of the longest component, beyond every inverse of an axis whose component is not thin: a
 /// plane is met outside the scene, by a wide margin, unless it lies within the pad of the origin.
 const THIN: f32 = 1e12;
 
 /// How much longer a coordinate may be than a component of the direction, so that no quotient overflows.
-const LENGTHS: f32 = 1e24;
+pub(super) const LENGTHS: f32 = 1e24;
 
 impl Scene {
     /// Whose box is `bounds`.

@@ -1,0 +1,103 @@
+//! Sixteen rays, a lane each, against one box.
+//!
+//! The rays come from one octant, so that the near planes of a box are the same for all. The formulas are those of
+//! [`super::wide`].
+
+use crate::geometry::lanes::{Lane, LaneMask, LaneRay};
+
+use super::wide::{FAR, LENGTHS, OFFSET_PAD, Scene};
+use super::{CONE, RANGE, WideCorners, WideSlabRay};
+
+/// The rays.
+#[derive(Debug, Clone, Copy)]
+pub(in super::super) struct SlabRays<L> {
+    /// Of each axis for the near and the far planes.
+    inverse: [[L; 2]; 3],
+    offset: [[L; 2]; 3],
+    /// Which side they come from: 1 where their directions are negative.
+    near: [usize; 3],
+    t_min: L,
+}
+
+impl<L: Lane<1>> SlabRays<L> {
+    /// The rays, all with direction signs `near`, and a bit for each that is plain; what is computed of others means nothing.
+    #[inline(always)]
+    pub fn new(rays: &LaneRay<L>, t_min: L, near: [usize; 3], scene: &Scene) -> (Self, u32) {
+        let (origin, dir) = (&rays.origin, &rays.dir);
+        let size = [dir.x.abs(), dir.y.abs(), dir.z.abs()];
+        let longest = size[0].max(size[1]).max(size[2]);
+        let shortest = size[0].min(size[1]).min(size[2]);
+        let farthest = origin.x.abs().max(origin.y.abs()).max(origin.z.abs());
+        let width = longest * L::splat(CONE);
+        let room = shortest * L::splat(LENGTHS);
+        let is_plain = shortest.gt(width + width)
+            & t_min.ge(L::splat(0.0))
+            & longest.lt(L::splat(RANGE))
+            & longest.gt(L::splat(1.0 / RANGE))
+            & farthest.lt(L::splat(RANGE))
+            & farthest.lt(room)
+            & L::splat(scene.largest).lt(room);
+        let (x, x_offset) = Self::axis(origin.x, dir.x, width);
+        let (y, y_offset) = Self::axis(origin.y, dir.y, width);
+        let (z, z_offset) = Self::axis(origin.z, dir.z, width);
+        let rays = Self {
+            inverse: [x, y, z],
+            offset: [x_offset, y_offset, z_offset],
+            near,
+            t_min,
+        };
+        (rays, is_plain.bits())
+    }
+
+    /// Inverses and offsets of one axis.
+    #[inline(always)]
+    fn axis(origin: L, dir: L, width: L) -> ([L; 2], [L; 2]) {
+        let inverse = L::splat(1.0) / dir;
+        let x = inverse.abs() * width;
+        let near = inverse - inverse * x;
+        let far = inverse + inverse * (x + L::splat(2.0) * x * x);
+        let (first, last) = (origin * near, origin * far);
+        let pad = |offset: L| offset.abs() * L::splat(OFFSET_PAD) + L::splat(f32::MIN_POSITIVE);
+        ([near, far], [first + pad(first), last - pad(last)])
+    }
+
+    /// Where the rays enter and leave a child's box, each until its limit; it is missed if the first is greater than the
+    /// second.
+    #[inline(always)]
+    pub fn clip(&self, boxes: &WideCorners, child: usize, limits: L) -> (L, L) {
+        let near = self.meet(boxes, child, 0, 0);
+        let entry = self
+            .meet(boxes, child, 1, 0)
+            .max(self.meet(boxes, child, 2, 0));
+        let far = self.meet(boxes, child, 0, 1);
+        let exit = self
+            .meet(boxes, child, 1, 1)
+            .min(self.meet(boxes, child, 2, 1));
+        (entry.max(near.max(self.t_min)), exit.min(far.min(limits)))
+    }
+
+    /// Where they meet the plane on one side of an axis (0: near).
+    #[inline(always)]
+    fn meet(&self, boxes: &WideCorners, child: usize, axis: usize, side: usize) -> L {
+        let plane = L::splat(boxes[axis][(self.near[axis] ^ side) & 1][child & 7]);
+        plane.mul_sub_freely(self.inverse[axis][side], self.offset[axis][side])
+    }
+
+    /// One of the rays.
+    #[inline(always)]
+    pub fn ray(&self, lane: usize) -> WideSlabRay {
+        let (mut inverse, mut offset) = ([0.0; 8], [0.0; 8]);
+        for axis in 0..3 {
+            for side in 0..2 {
+                inverse[side * FAR + axis] = self.inverse[axis][side].get(lane);
+                offset[side * FAR + axis] = self.offset[axis][side].get(lane);
+            }
+        }
+        WideSlabRay {
+            inverse,
+            offset,
+            near: self.near,
+            t_min: self.t_min.get(lane),
+        }
+    }
+}

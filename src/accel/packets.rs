@@ -22,8 +22,8 @@ pub(super) const TOO_DEAR: u32 = 40;
 /// Cost of a ray in a packet of 16 below which 64 may go together.
 const CHEAP: u32 = 15;
 
-/// Rays that go alone until a packet is tried again.
-const ALONE: usize = 256;
+/// Rays that go alone until a packet is tried again: at first, and most, where it was tried in vain again and again.
+const ALONE: Range<usize> = 256..8192;
 
 /// A structure that packets can go through.
 pub(super) trait Together: Structure {
@@ -72,6 +72,7 @@ pub(super) fn trace<'a, S: Together, R: Rays<'a>>(
     let count = batch.rays().len();
     let mut start = 0;
     let mut size = VECTOR;
+    let mut in_vain = ALONE.start;
     while start < count {
         let mut alone = start..count;
         if R::PACKETS && packets {
@@ -79,6 +80,7 @@ pub(super) fn trace<'a, S: Together, R: Rays<'a>>(
             let rays = range.len() as u32;
             if let Some(cost) = structure.together(batch, range.clone(), scratch) {
                 start = range.end;
+                in_vain = ALONE.start;
                 if cost > TOO_WIDE * rays {
                     size = VECTOR;
                 } else if cost < CHEAP * rays && start.is_multiple_of(MOST) {
@@ -92,7 +94,8 @@ pub(super) fn trace<'a, S: Together, R: Rays<'a>>(
                 size = VECTOR;
                 continue;
             }
-            alone.end = count.min(start + ALONE);
+            alone.end = count.min(start + in_vain);
+            in_vain = ALONE.end.min(2 * in_vain);
         }
         start = alone.end;
         if R::PACKETS && packets {

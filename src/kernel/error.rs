@@ -99,3 +99,89 @@ pub(super) fn round_up(bound: f64) -> f32 {
     }
     ((bound * (1.0 + 1e-6)) as f32).next_up()
 }
+
+#[cfg(test)]
+mod tests {
+    use rand_core::Rng;
+    use rand_pcg::Pcg32;
+
+    use super::*;
+    use crate::geometry::Ray;
+    use crate::geometry::lanes::LaneRay;
+    use crate::kernel::{Kernel, KernelUser, dispatch, parse};
+
+    /// How a kernel's quick bound compares with the one in `f64`, for hits of rays aimed into triangles.
+    struct Compare {
+        /// Size of the triangles, and how far away they are.
+        size: f32,
+        far: f32,
+    }
+
+    impl KernelUser for Compare {
+        /// The ratios of both, where both are finite; how many quick bounds are not.
+        type Out = (Vec<f32>, usize);
+
+        fn with<K: Kernel>(self, kernel: K) -> Self::Out {
+            let mut dice = Pcg32::new(1, 2);
+            let mut number = || dice.next_u32() as f32 / u32::MAX as f32 - 0.5;
+            let mut vector = || Vec3::new(number(), number(), number());
+            let (mut ratios, mut unknown) = (Vec::new(), 0);
+            for _ in 0..3000 {
+                let at = vector() * self.far;
+                let corners = [(); 3].map(|()| at + vector() * self.size);
+                let inside = corners.iter().sum::<Vec3>() / 3.0;
+                let origin = at + vector() * (self.far + 4.0 * self.size);
+                let ray = Ray::new(origin, (inside - origin) * 1.5);
+                let packed = kernel.pack::<1>(|_| corners);
+                let prepared = kernel.prepare::<1, f32>(&ray, &LaneRay::splat(&ray));
+                let Some(hit) = kernel.intersect(&prepared, &packed) else {
+                    continue;
+                };
+                let quick = K::t_error_bound(&prepared, &packed, hit.t);
+                let sure = kernel.t_error(&ray, &corners, hit.t);
+                assert!(quick >= sure, "{ray:?}, {corners:?}: {quick} < {sure}");
+                if quick.is_finite() {
+                    ratios.push(quick / sure);
+                } else {
+                    unknown += 1;
+                }
+            }
+            ratios.sort_by(f32::total_cmp);
+            (ratios, unknown)
+        }
+    }
+
+    fn compared(kernel: &str, size: f32, far: f32) -> (Vec<f32>, usize) {
+        dispatch(&parse(kernel).unwrap(), Compare { size, far }).unwrap()
+    }
+
+    #[test]
+    fn quick_bounds_are_larger_and_not_much() {
+        for kernel in ["moller-trumbore", "woop", "pbrt", "exact"] {
+            let (ratios, unknown) = compared(kernel, 1.0, 10.0);
+            let hits = ratios.len();
+            assert!(
+                hits > 1000 && unknown < hits / 50,
+                "{kernel}: {hits}, {unknown}"
+            );
+            assert!(
+                ratios[hits / 2] < 12.0,
+                "{kernel}: half of the bounds are {} times as large",
+                ratios[hits / 2]
+            );
+        }
+    }
+
+    #[test]
+    fn quick_bounds_hold_or_are_infinite_at_any_size() {
+        for kernel in ["moller-trumbore", "woop", "pbrt", "exact"] {
+            for exponent in (-30..30).step_by(3) {
+                let size = 10_f32.powi(exponent);
+                for far in [size, 100.0 * size, 1.0, 1e4] {
+                    // Asserts inside.
+                    compared(kernel, size, far);
+                }
+            }
+        }
+    }
+}

@@ -76,7 +76,8 @@ pub trait Kernel: Debug + Clone + Send + Sync + 'static {
     /// One triangle of a block.
     fn lane(block: &Self::Packed<8>, lane: usize) -> Self::Packed<1>;
 
-    /// Whether rays with a common origin may be tested as a packet: what a block holds tells the corners.
+    /// Whether batches are traced in all ways, packets among them: what a block holds tells the corners, and the kernel is
+    /// one that is chosen for its speed. All ways of all kernels would take the compiler twice as long.
     const PACKETS: bool = false;
 
     /// The corners of a block's triangles, off by no more than a rounding of an edge; asked only where

@@ -181,13 +181,6 @@ impl Kernel for MollerTrumboreF64 {
         block.lane(lane)
     }
 
-    const PACKETS: bool = true;
-
-    #[inline(always)]
-    fn corners<L: Lane<8>>(block: &Corners<8>) -> [LaneVec3<L>; 3] {
-        block.load()
-    }
-
     #[inline(always)]
     fn prepare<const W: usize, L: Lane<W>>(&self, _: &Ray, rays: &LaneRay<L>) -> LaneRay<L> {
         *rays

@@ -113,7 +113,7 @@ impl<'a, R: Rays<'a>> Task for Hybrid<'_, 'a, R> {
             let octants = Octants::of(batch.rays(), window, &mut order);
             for octant in octants {
                 for indices in order[octant].chunks(GROUP) {
-                    if indices.len() < FEW as usize {
+                    if !R::Isa::SIXTEEN || indices.len() < FEW as usize {
                         for index in indices {
                             alone(tree, batch, *index as usize, stack);
                         }
@@ -284,7 +284,6 @@ fn together<'a, R: Rays<'a>>(
                 if next.is_leaf() {
                     for block in next.blocks() {
                         if visitor.test(block) {
-                            active &= !(1 << lane);
                             limits[lane] = f32::NEG_INFINITY;
                             break;
                         }

@@ -188,6 +188,9 @@ impl Structure for BvhWide {
 
     #[inline(always)]
     fn trace<'a, R: Rays<'a>>(&self, batch: &mut R, stacks: &mut Stacks) {
+        if !R::WAYS {
+            return packets::trace(self, batch, stacks, false);
+        }
         match self
             .way
             .unwrap_or_else(|| way::choose(self, batch.rays(), !R::Visitor::ORDERED))

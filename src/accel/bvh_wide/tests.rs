@@ -14,8 +14,9 @@ use crate::kernel;
 use crate::scene::Mesh;
 
 /// The ways, in the words of the command line.
-const WAYS: [&str; 3] = [
+const WAYS: [&str; 4] = [
     "bvh-wide:way=single",
+    "bvh-wide:way=hybrid",
     "bvh-wide:way=interleaved",
     "bvh-wide:way=packets",
 ];

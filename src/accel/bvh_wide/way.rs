@@ -23,7 +23,7 @@ impl Way {
     /// The parameter that asks for a way: for tests and for measuring what the choice is worth.
     pub const PARAM: ParamSpec = ParamSpec {
         name: "way",
-        about: "How a batch of rays is traced; `auto` looks at the rays and the tree.",
+        about: "How a batch of rays is traced; `auto` looks at the rays and the tree. Kernels that make no packets have but one way: `single`.",
         kind: ParamKind::Choice(&["auto", "single", "hybrid", "interleaved", "packets"]),
         default: "auto",
     };

@@ -1,6 +1,7 @@
 use super::super::testbed::Dice;
 use super::*;
 use crate::geometry::Vec3;
+use crate::geometry::lanes::{InstructionSet, Isa, Lane, LaneMask, LaneRay, Task};
 
 /// A ray and a box of whole numbers, so that all of it can be judged exactly.
 #[derive(Debug)]
@@ -39,24 +40,71 @@ impl Case {
         exit.is_none_or(|exit| entry.0 * exit.1 <= exit.0 * entry.1)
     }
 
-    /// What the slab test says, with everything scaled by powers of two and zeros of one sign.
-    fn slab(&self, scale: f32, dir_scale: f32, zero: f32) -> bool {
+    /// Ray and box as floats, everything scaled by powers of two and zeros of one sign.
+    fn floats(&self, scale: f32, dir_scale: f32, zero: f32) -> (Ray, Aabb) {
         let float = |v: [i64; 3], s: f32| Vec3::from(v.map(|x| x as f32 * s));
         let signed = |x: f32| if x == 0.0 { zero } else { x };
         let dir = float(self.dir, dir_scale).to_array().map(signed);
-        let ray = Ray::new(float(self.origin, scale), dir.into());
         let aabb = Aabb {
             min: float(self.least, scale),
             max: float(self.greatest, scale),
         };
-        SlabRay::new(&ray, &aabb)
-            .interval(&corners(aabb), f32::INFINITY)
-            .is_some()
+        (Ray::new(float(self.origin, scale), dir.into()), aabb)
     }
 
     fn corner(&self, dice: &mut Dice, a: usize) -> i64 {
         [self.least[a], self.greatest[a]][dice.below(2) as usize]
     }
+}
+
+/// A box among eight, and a ray among sixteen, in the lanes of an instruction set.
+struct InLanes {
+    ray: Ray,
+    aabb: Aabb,
+}
+
+impl Task for InLanes {
+    /// Whether the box is met: by the test of eight boxes; by that of sixteen rays, where the ray is plain.
+    type Out = (bool, Option<bool>);
+
+    fn run<I: Isa>(self) -> Self::Out {
+        let Self { ray, aabb } = self;
+        let scene = Scene::new(aabb);
+        let mut boxes: WideCorners = [[[f32::INFINITY; 8], [f32::NEG_INFINITY; 8]]; 3];
+        for axis in 0..3 {
+            boxes[axis][0][3] = aabb.min[axis];
+            boxes[axis][1][3] = aabb.max[axis];
+        }
+        let wide = WideSlabRay::new::<I::X8>(&ray, &scene);
+        let (entry, exit): (I::X8, I::X8) = wide.clip(&boxes, f32::INFINITY);
+        let met = entry.le(exit).bits();
+        assert_eq!(met & !(1 << 3), 0, "a lane without a box was met");
+
+        let near = ray
+            .dir
+            .to_array()
+            .map(|d| usize::from(d.is_sign_negative()));
+        let lanes = LaneRay::<I::Rays>::of(|_| &ray);
+        let (rays, plain) = SlabRays::new(&lanes, I::Rays::splat(0.0), near, &scene);
+        let (entry, exit) = rays.clip(&boxes, 3, I::Rays::splat(f32::INFINITY));
+        let of_sixteen = entry.le(exit).bits() >> 5 & 1 == 1;
+        (met != 0, (plain >> 5 & 1 == 1).then_some(of_sixteen))
+    }
+}
+
+/// What each test says of a ray and a box.
+fn verdicts(ray: &Ray, aabb: Aabb) -> Vec<(String, bool)> {
+    let one = SlabRay::new(ray, &aabb).interval(&corners(aabb), f32::INFINITY);
+    let mut verdicts = vec![("one box".to_owned(), one.is_some())];
+    for set in InstructionSet::ALL
+        .into_iter()
+        .filter(|set| set.is_available())
+    {
+        let (wide, of_sixteen) = set.run(InLanes { ray: *ray, aabb });
+        verdicts.push((format!("eight boxes, {set}"), wide));
+        verdicts.extend(of_sixteen.map(|met| (format!("sixteen rays, {set}"), met)));
+    }
+    verdicts
 }
 
 fn number(dice: &mut Dice, reach: u32) -> i64 {
@@ -93,13 +141,15 @@ fn never_missed(seed: u64, aim: impl Fn(&mut Dice, &mut Case)) {
         let scale = [1.0, 0.001_953_125, 65_536.0][dice.below(3) as usize];
         let dir_scale = [1.0, 0.001_953_125, 1024.0][dice.below(3) as usize];
         let zero = [0.0, -0.0][dice.below(2) as usize];
-        let slab = case.slab(scale, dir_scale, zero);
-        if case.touches(0) {
-            touched += 1;
-            assert!(slab, "missed {case:?}");
-        } else if !case.touches(1 << 8) {
-            // The pad is a few millionths of the way: a box that is missed by more is missed here too.
-            assert!(!slab, "phantom {case:?}");
+        let (ray, aabb) = case.floats(scale, dir_scale, zero);
+        for (test, met) in verdicts(&ray, aabb) {
+            if case.touches(0) {
+                touched += 1;
+                assert!(met, "{test}: missed {case:?}");
+            } else if !case.touches(1 << 8) {
+                // The pad is a few millionths of the way: a box that is missed by more is missed here too.
+                assert!(!met, "{test}: phantom {case:?}");
+            }
         }
     }
     assert!(touched > 1000, "only {touched} boxes were touched");

@@ -43,6 +43,9 @@ pub trait Isa: Copy + Send + Sync + 'static {
     /// A number for each of the sixteen rays of a packet.
     type Rays: Lane<1>;
 
+    /// Whether numbers of sixteen rays are quickly computed with.
+    const SIXTEEN: bool = true;
+
     /// Runs `task`, with these lanes, in a function compiled for them: from code that knows the set but is compiled for none.
     fn enter<T: Task>(task: T) -> T::Out;
 
@@ -101,6 +104,9 @@ pub(super) const LANE_BITS: u32 = 7;
 impl Isa for Portable {
     type X8 = F32x8;
     type Rays = Pair<F32x8>;
+
+    // Where there is better, this is only the judge of it, and compiled sooner without.
+    const SIXTEEN: bool = !cfg!(target_arch = "x86_64");
 
     #[inline(always)]
     fn enter<T: Task>(task: T) -> T::Out {

@@ -5,7 +5,7 @@ use crate::registry::{ParamKind, ParamSpec, Params};
 use crate::scene::Mesh;
 
 use super::super::slab::{Corners, corners};
-use super::{binned, leaves, spatial};
+use super::{binned, leaves, reinsert, spatial};
 
 /// A box and what is in it: two children at `first` and `first + 1`, or `count` references from `first` on.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -104,6 +104,10 @@ pub(in crate::accel) enum Build {
     Binned,
     /// As [`Build::Binned`], and planes cut triangles where boxes would overlap.
     Sbvh,
+    /// As [`Build::Binned`], then subtrees move to where they enlarge boxes least.
+    Reinsert,
+    /// As [`Build::Sbvh`], then as [`Build::Reinsert`]: the slowest to build and the cheapest to trace.
+    SbvhReinsert,
 }
 
 impl Build {
@@ -111,7 +115,7 @@ impl Build {
     pub const PARAM: ParamSpec = ParamSpec {
         name: "build",
         about: "How the tree is built.",
-        kind: ParamKind::Choice(&["binned", "sbvh"]),
+        kind: ParamKind::Choice(&["binned", "sbvh", "reinsert", "sbvh-reinsert"]),
         default: "binned",
     };
 
@@ -119,6 +123,8 @@ impl Build {
     pub fn of(params: &Params) -> Self {
         match params.text("build") {
             "sbvh" => Self::Sbvh,
+            "reinsert" => Self::Reinsert,
+            "sbvh-reinsert" => Self::SbvhReinsert,
             _ => Self::Binned,
         }
     }
@@ -132,6 +138,8 @@ pub(in crate::accel) fn binary(mesh: &Mesh, build: Build, most: usize) -> Binary
     let tree = match build {
         Build::Binned => binned::build(binned::references(mesh)),
         Build::Sbvh => spatial::build(mesh),
+        Build::Reinsert => reinsert::optimised(binned::build(binned::references(mesh))),
+        Build::SbvhReinsert => reinsert::optimised(spatial::build(mesh)),
     };
     if most > 1 {
         leaves::merged(&tree, most)

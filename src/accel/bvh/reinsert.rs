@@ -1,0 +1,312 @@
+//! The reinsertion of subtrees: a finished tree is made better by moving subtrees to where they enlarge boxes least.
+//!
+//! ```text
+//!         o                 o          x moves beside y: its parent p goes with it, its sibling s takes
+//!       /   \             /   \        p's place. Ids of nodes stay, only links change.
+//!      p     o           s     o
+//!     / \   / \               / \
+//!    x   s y   z             p   z
+//!                           / \
+//!                          x   y
+//! ```
+//!
+//! In each pass the nodes with the largest boxes look for their best places, all in the tree as it is at the begin of the
+//! pass and hence in parallel; then they move one after the other, those first that gain most, and what turns out to
+//! gain nothing after the others have moved goes back. So a pass never makes the tree worse, and the result does not
+//! depend on the number of threads.
+//!
+//! **Source:** J. Bittner, M. Hapala and V. Havran, "Fast Insertion-Based Optimization of Bounding Volume Hierarchies",
+//! 2013; D. Meister and J. Bittner, "Parallel Reinsertion for Bounding Volume Hierarchy Optimization", 2018.
+//! **Differs:** moves are checked when they are made, instead of locking what they touch; the work is bounded by the
+//! number of passes and of nodes a pass.
+
+use rayon::prelude::*;
+
+use super::super::stack::MAX_DEPTH;
+use super::reference::Bounds;
+use super::{BinaryTree, Node, validate};
+
+/// Passes over the tree. Three bring nine tenths of what many do.
+const PASSES: usize = 3;
+
+/// One node in so many looks for a better place in a pass: large boxes cost most.
+const PART: usize = 8;
+
+/// Most places that a node looks at: where all boxes overlap, nothing bounds the search.
+const PLACES: usize = 2048;
+
+/// No node.
+const NONE: u32 = u32::MAX;
+
+/// A node with links in all directions.
+#[derive(Debug, Clone, Copy)]
+struct Linked {
+    bounds: Bounds,
+    area: f32,
+    parent: u32,
+    /// [`NONE`] for leaves.
+    children: [u32; 2],
+}
+
+impl Linked {
+    fn is_leaf(&self) -> bool {
+        self.children[0] == NONE
+    }
+}
+
+/// `tree`, whose leaves hold one reference each, after its subtrees were moved.
+pub(super) fn optimised(tree: BinaryTree) -> BinaryTree {
+    if tree.nodes.is_empty() {
+        return tree;
+    }
+    let mut links = Links::of(&tree.nodes);
+    for _ in 0..PASSES {
+        if !links.pass() {
+            break;
+        }
+    }
+    let moved = links.tree(&tree);
+    // What is moved can come to lie too deep.
+    let is_deep = validate::depth(&moved.nodes) as usize > MAX_DEPTH;
+    if is_deep { tree } else { moved }
+}
+
+/// Where a node would better be.
+#[derive(Debug, Clone, Copy)]
+struct Move {
+    node: u32,
+    to: u32,
+    /// By how much the areas of all nodes together would shrink.
+    gain: f32,
+}
+
+/// A tree that can be changed. The root is node 0.
+struct Links {
+    nodes: Vec<Linked>,
+    scale: f32,
+}
+
+impl Links {
+    fn of(nodes: &[Node]) -> Self {
+        let scale = nodes
+            .first()
+            .map_or(1.0, |root| Bounds::from(root.bounds()).scale());
+        let mut linked: Vec<Linked> = nodes
+            .par_iter()
+            .map(|node| {
+                let bounds = Bounds::from(node.bounds());
+                Linked {
+                    bounds,
+                    area: bounds.half_area(scale),
+                    parent: NONE,
+                    children: if node.is_leaf() {
+                        [NONE; 2]
+                    } else {
+                        [node.first, node.first + 1]
+                    },
+                }
+            })
+            .collect();
+        for id in 0..linked.len() {
+            for child in linked[id].children {
+                if child != NONE {
+                    linked[child as usize].parent = id as u32;
+                }
+            }
+        }
+        Self {
+            nodes: linked,
+            scale,
+        }
+    }
+
+    fn node(&self, id: u32) -> &Linked {
+        &self.nodes[id as usize]
+    }
+
+    fn sibling(&self, id: u32) -> u32 {
+        let [a, b] = self.node(self.node(id).parent).children;
+        if a == id { b } else { a }
+    }
+
+    /// Whether a node can move: it has a grandparent.
+    fn can_move(&self, id: u32) -> bool {
+        let parent = self.node(id).parent;
+        parent != NONE && self.node(parent).parent != NONE
+    }
+
+    /// Moves what gains; false where nothing does.
+    fn pass(&mut self) -> bool {
+        let mut candidates: Vec<u32> = (0..self.nodes.len() as u32)
+            .into_par_iter()
+            .filter(|&id| self.can_move(id))
+            .collect();
+        let count = self.nodes.len().div_ceil(PART);
+        if candidates.len() > count {
+            // The largest first; equals by their ids, so that the choice is the same in every run.
+            let order = |a: &u32, b: &u32| {
+                let areas = [b, a].map(|id| self.node(*id).area);
+                areas[0].total_cmp(&areas[1]).then(a.cmp(b))
+            };
+            candidates.select_nth_unstable_by(count, order);
+            candidates.truncate(count);
+        }
+        let mut moves: Vec<Move> = candidates
+            .par_iter()
+            .filter_map(|&id| self.best_move(id))
+            .collect();
+        moves.par_sort_unstable_by(|a, b| b.gain.total_cmp(&a.gain).then(a.node.cmp(&b.node)));
+        let mut moved = false;
+        for next in moves {
+            moved |= self.try_move(next);
+        }
+        moved
+    }
+
+    /// The place of the greatest gain for a node that can move, found by branch and bound.
+    fn best_move(&self, id: u32) -> Option<Move> {
+        let moving = self.node(id);
+        let parent = moving.parent;
+        let mut best = Move {
+            node: id,
+            to: NONE,
+            gain: 0.0,
+        };
+        // What is gained if the node is taken out, up to the pivot: the area of its parent, and what boxes above shrink.
+        let mut gain = self.node(parent).area;
+        let mut sibling = self.sibling(id);
+        let mut shrunk = self.node(sibling).bounds;
+        let mut pivot = parent;
+        let mut open: Vec<(f32, u32)> = Vec::with_capacity(64);
+        let mut places = 0;
+        loop {
+            // Places below the pivot's other child.
+            open.push((gain, sibling));
+            while let Some((gain, at)) = open.pop() {
+                if gain - moving.area <= best.gain || places > PLACES {
+                    continue;
+                }
+                places += 1;
+                let node = self.node(at);
+                let left = gain - node.bounds.union(moving.bounds).half_area(self.scale);
+                if left > best.gain {
+                    (best.to, best.gain) = (at, left);
+                }
+                if !node.is_leaf() {
+                    open.extend(node.children.map(|child| (left + node.area, child)));
+                }
+            }
+            if pivot != parent {
+                shrunk = shrunk.union(self.node(sibling).bounds);
+                gain += self.node(pivot).area - shrunk.half_area(self.scale);
+            }
+            if self.node(pivot).parent == NONE || places > PLACES {
+                break;
+            }
+            sibling = self.sibling(pivot);
+            pivot = self.node(pivot).parent;
+        }
+        let stays = best.to == NONE || best.to == parent || best.to == self.sibling(id);
+        (!stays).then_some(best)
+    }
+
+    /// Moves where that still gains; whether it did.
+    fn try_move(&mut self, next: Move) -> bool {
+        let (id, to) = (next.node, next.to);
+        if !self.can_move(id) {
+            return false;
+        }
+        let (parent, sibling) = (self.node(id).parent, self.sibling(id));
+        if to == parent || to == sibling || self.is_below(to, id) {
+            return false;
+        }
+        let gain = self.relink(id, to);
+        if gain > 0.0 {
+            return true;
+        }
+        self.relink(id, sibling);
+        false
+    }
+
+    /// Whether `id` is `ancestor` or below it.
+    fn is_below(&self, mut id: u32, ancestor: u32) -> bool {
+        while id != NONE {
+            if id == ancestor {
+                return true;
+            }
+            id = self.node(id).parent;
+        }
+        false
+    }
+
+    /// Moves a node with its parent to above `to`, which is neither of them nor its sibling nor below it; by how much all
+    /// areas together shrink.
+    fn relink(&mut self, id: u32, to: u32) -> f64 {
+        let (parent, sibling) = (self.node(id).parent, self.sibling(id));
+        let above = self.node(parent).parent;
+        self.replace_child(above, parent, sibling);
+        let mut gain = f64::from(self.node(parent).area) + self.refit(above);
+        let above = self.node(to).parent;
+        self.replace_child(above, to, parent);
+        let bounds = self.node(id).bounds.union(self.node(to).bounds);
+        let area = bounds.half_area(self.scale);
+        let joint = &mut self.nodes[parent as usize];
+        (joint.bounds, joint.area, joint.children) = (bounds, area, [id, to]);
+        self.nodes[to as usize].parent = parent;
+        gain += self.refit(above) - f64::from(area);
+        gain
+    }
+
+    fn replace_child(&mut self, parent: u32, old: u32, new: u32) {
+        for child in &mut self.nodes[parent as usize].children {
+            if *child == old {
+                *child = new;
+            }
+        }
+        self.nodes[new as usize].parent = parent;
+    }
+
+    /// Fits the boxes of a node and of those above it to their children, as long as they change; by how much their
+    /// areas shrink.
+    fn refit(&mut self, mut id: u32) -> f64 {
+        let mut gain = 0.0;
+        while id != NONE {
+            let [a, b] = self.node(id).children.map(|child| self.node(child).bounds);
+            let bounds = a.union(b);
+            let node = &mut self.nodes[id as usize];
+            if node.bounds.min.truncate() == bounds.min.truncate()
+                && node.bounds.max.truncate() == bounds.max.truncate()
+            {
+                break;
+            }
+            let area = bounds.half_area(self.scale);
+            gain += f64::from(node.area) - f64::from(area);
+            (node.bounds, node.area) = (bounds, area);
+            id = node.parent;
+        }
+        gain
+    }
+
+    /// The tree in the order of its nodes, with the leaves of `old`, whose nodes have the ids of this.
+    fn tree(&self, old: &BinaryTree) -> BinaryTree {
+        let mut nodes = Vec::with_capacity(self.nodes.len());
+        let mut references = Vec::with_capacity(old.references.len());
+        nodes.push(Node::NONE);
+        let mut open = vec![(0, 0)];
+        while let Some((at, id)) = open.pop() {
+            let linked = self.node(id);
+            let bounds = linked.bounds.aabb();
+            if linked.is_leaf() {
+                nodes[at] = Node::leaf(bounds, references.len() as u32, 1);
+                references.extend_from_slice(old.references_of(&old.nodes[id as usize]));
+                continue;
+            }
+            let first = nodes.len();
+            nodes[at] = Node::interior(bounds, first as u32);
+            nodes.extend([Node::NONE; 2]);
+            open.push((first + 1, linked.children[1]));
+            open.push((first, linked.children[0]));
+        }
+        BinaryTree { nodes, references }
+    }
+}

@@ -11,7 +11,8 @@
 //! A node is 32 bytes. The traversal tests both children of a node, goes on with the nearer one and keeps the other on
 //! a stack with its entry; what begins beyond the nearest hit is dropped when it is popped.
 //!
-//! **Source:** I. Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007, for the binned build.
+//! **Source:** I. Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007, for the binned build; the
+//! other builds name theirs.
 //! **Differs:** depth is bounded by the stack's room: where the heuristic would dig deeper, references are halved by
 //! index, and the stack needs no check.
 
@@ -320,6 +321,21 @@ mod tests {
                 references
             };
             assert_eq!(sorted(before), sorted(after));
+        }
+    }
+
+    #[test]
+    fn boxes_after_reinsertion_are_the_least_that_contain_what_is_below_them() {
+        let mesh = mesh(&mixed(2000, 15));
+        let tree = binary(&mesh, Build::Reinsert, 1);
+        for node in &tree.nodes {
+            let within = if node.is_leaf() {
+                mesh.triangle_bounds(tree.references_of(node)[0])
+            } else {
+                let [a, b] = [0, 1].map(|side| tree.nodes[node.first as usize + side].bounds());
+                a.union(b)
+            };
+            assert_eq!(node.bounds(), within);
         }
     }
 

@@ -216,6 +216,17 @@ pub enum BuildError {
         /// The greatest resolution within the limit.
         largest_n: u32,
     },
+    /// A structure without a resolution that grew beyond what it may take.
+    #[error(
+        "{accel} over this scene takes more than the limit of {} MB; choose a structure that lists each triangle once, e.g. bvh-wide",
+        limit_bytes >> 20
+    )]
+    Outgrown {
+        /// The accelerator.
+        accel: &'static str,
+        /// What it may take.
+        limit_bytes: u64,
+    },
     /// A peer that cannot take this mesh.
     #[error("{accel} cannot take {why}; choose another accelerator for this scene")]
     Unfit {

@@ -39,7 +39,7 @@ impl Span {
 
 /// Bytes of a block: its triangles as most kernels keep them, and their indices twice, since they are known before they
 /// are packed.
-const BLOCK_BYTES: u64 = LANES as u64 * (48 + 2 * size_of::<u32>() as u64);
+pub(super) const BLOCK_BYTES: u64 = LANES as u64 * (48 + 2 * size_of::<u32>() as u64);
 
 /// Triangles in blocks.
 #[derive(Debug, Default)]

@@ -14,7 +14,7 @@
 //!
 //! Builds are slow: more than ten times as slow as the kd-tree's. They are bounded: only cells of at most some hundred
 //! triangles are tried, with a fixed number of planes, depth is that of the stack, and a subtree lists no more references than
-//! sixteen times its triangles.
+//! sixteen times its triangles. Subtrees count what they take, and the build is given up where that is more than it may.
 //!
 //! **Conservative.** With heights above a plane in lengths of its normal, of which the greatest component is 1: what a triangle
 //! has within [`tolerance`](Scale::tolerance) of a plane may be listed on one side only; everything computed here is off by
@@ -25,13 +25,17 @@
 //! **Source:** T. Ize, I. Wald and S. Parker, "Ray Tracing with the BSP Tree", 2008. **Differs:** oblique planes are tried
 //! in the lower levels only, and for a sample of the triangles.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use crate::geometry::Aabb;
 use crate::scene::Mesh;
 
-use super::AcceleratorEntry;
+use super::items::LANES;
 use super::kd_tree::{Cell, Upper};
-use super::plane_tree::{Part, PlaneTree, Splitter, parts};
+use super::plane_tree::{Node, Part, PlaneTree, Splitter, Subtree, parts};
+use super::share::BLOCK_BYTES;
 use super::traced::finish_in_order;
+use super::{AcceleratorEntry, BuildError};
 
 mod build;
 mod piece;
@@ -46,7 +50,7 @@ pub(super) const ENTRY: AcceleratorEntry = AcceleratorEntry {
     resolution: None,
     peer: None,
     build: |request| {
-        let (tree, slots) = build(request.mesh);
+        let (tree, slots) = build(request.mesh, request.memory_limit)?;
         finish_in_order(tree, &slots, request)
     },
 };
@@ -79,16 +83,59 @@ impl Scale {
     }
 }
 
+/// What the subtrees together may take, and what those that have grown take.
+struct Budget {
+    limit_bytes: u64,
+    taken: AtomicU64,
+}
+
+impl Budget {
+    fn is_exceeded(&self) -> bool {
+        self.taken.load(Ordering::Relaxed) > self.limit_bytes
+    }
+
+    fn take(&self, bytes: u64) {
+        self.taken.fetch_add(bytes, Ordering::Relaxed);
+    }
+}
+
 /// Builds the tree over `mesh`, in parallel in the rayon pool it is called in; also the triangle of every lane of its blocks.
-fn build(mesh: &Mesh) -> (PlaneTree, Vec<u32>) {
+///
+/// # Errors
+/// It would take more than `limit_bytes`. Subtrees that are grown count until it is exceeded; whether it is does not depend
+/// on their order, and none is begun after.
+fn build(mesh: &Mesh, limit_bytes: u64) -> Result<(PlaneTree, Vec<u32>), BuildError> {
+    let budget = Budget {
+        limit_bytes,
+        taken: AtomicU64::new(0),
+    };
+    let refused = BuildError::Outgrown {
+        accel: ENTRY.name,
+        limit_bytes,
+    };
+    // Each triangle takes a lane at least.
+    if mesh.len().div_ceil(LANES) as u64 * BLOCK_BYTES > limit_bytes {
+        return Err(refused);
+    }
     let bounds = mesh.bounds();
     let scale = Scale::of(&bounds);
     let upper = Upper {
         splitter: Splitter { mesh, clip: true },
         least: LEAST,
-        small: |cell: &Cell, parts: Vec<Part>| build::grow(mesh, scale, cell, &parts),
+        small: |cell: &Cell, parts: Vec<Part>| {
+            if budget.is_exceeded() {
+                return (Node::EMPTY, Subtree::default());
+            }
+            let (root, tree) = build::grow(mesh, scale, cell, &parts);
+            budget.take(tree.bytes());
+            (root, tree)
+        },
     };
-    upper.grow(&Cell::root(mesh), parts(mesh)).finish(bounds)
+    let grown = upper.grow(&Cell::root(mesh), parts(mesh));
+    if budget.is_exceeded() {
+        return Err(refused);
+    }
+    Ok(grown.finish(bounds))
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@ use super::*;
 use crate::geometry::Hit;
 
 fn tree(mesh: &Mesh) -> (PlaneTree, Vec<u32>) {
-    let (tree, slots) = build(mesh);
+    let (tree, slots) = build(mesh, u64::MAX).expect("no limit");
     tree.validate(mesh, &slots).expect("valid");
     (tree, slots)
 }
@@ -57,6 +57,43 @@ fn identical_triangles_are_not_cut_without_end() {
 fn the_depth_stays_bounded_where_planes_peel_off_one_triangle_at_a_time() {
     let stats = stats(&mesh(&geometric(-120..149).repeat(20)));
     assert!(stats.depth <= MAX_DEPTH as u32, "{stats:?}");
+}
+
+#[test]
+fn a_build_that_grows_beyond_its_limit_is_given_up_with_a_remedy() {
+    let mesh = mesh(&soup(3000, 0.3, 5));
+    let accel = built(&mesh, "bsp-tree", "woop");
+    let least = mesh.len().div_ceil(LANES) as u64 * BLOCK_BYTES;
+    // The limit is one of what is built, and not only of what the triangles take.
+    assert!(accel.memory_bytes() > 3 * least);
+    for (limit_bytes, fits) in [
+        (accel.memory_bytes() * 2, true),
+        (accel.memory_bytes() / 2, false),
+        (least, false),
+        (least - 1, false),
+        (0, false),
+    ] {
+        let refused = BuildError::Outgrown {
+            accel: "bsp-tree",
+            limit_bytes,
+        };
+        let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        for threads in [1, 5] {
+            let built = pool(threads)
+                .expect("a pool")
+                .install(|| build(&mesh, limit_bytes));
+            assert_eq!(built.as_ref().err(), (!fits).then_some(&refused));
+        }
+    }
+    let refused = BuildError::Outgrown {
+        accel: "bsp-tree",
+        limit_bytes: 5 << 20,
+    };
+    assert_eq!(
+        refused.to_string(),
+        "bsp-tree over this scene takes more than the limit of 5 MB; choose a structure that lists each triangle once, \
+         e.g. bvh-wide"
+    );
 }
 
 proptest! {

@@ -4,6 +4,7 @@ use crate::geometry::Aabb;
 
 use super::super::items::{LANES, fill};
 use super::super::pages;
+use super::super::share::BLOCK_BYTES;
 use super::PlaneTree;
 use super::node::{Node, Oblique};
 
@@ -53,6 +54,12 @@ impl Subtree {
     /// Its blocks.
     pub fn blocks(&self) -> usize {
         self.filled.len()
+    }
+
+    /// Bytes it takes once its blocks are packed.
+    pub fn bytes(&self) -> u64 {
+        let nodes = size_of_val(self.nodes.as_slice()) + size_of_val(self.obliques.as_slice());
+        nodes as u64 + self.filled.len() as u64 * (1 + BLOCK_BYTES)
     }
 
     /// How far it has grown.

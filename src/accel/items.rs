@@ -8,6 +8,8 @@
 //! A block is tested by one instruction stream for all its lanes, compiled for the instruction set of the processor. Lanes
 //! that are left repeat the last triangle: its hit is offered again and is not preferred to itself.
 
+use rayon::prelude::*;
+
 use crate::geometry::Ray;
 use crate::geometry::lanes::{InstructionSet, Isa, Lane, LaneMask, LaneRay, Portable, Task};
 use crate::kernel::{Kernel, LaneHit};
@@ -141,7 +143,7 @@ impl Items for Blocks {
     fn pack<K: Kernel>(kernel: &K, mesh: &Mesh, slots: &[u32]) -> Vec<Self::Item<K>> {
         let mut blocks = pages::with_capacity(slots.len() / LANES);
         let (whole, _) = slots.as_chunks::<LANES>();
-        blocks.extend(whole.iter().map(|prims| Block {
+        blocks.par_extend(whole.par_iter().map(|prims| Block {
             triangles: kernel.pack(|lane| mesh.corners(prims[lane])),
             prims: *prims,
         }));

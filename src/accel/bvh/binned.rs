@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use crate::scene::Mesh;
 
+use super::super::pages;
 use super::super::stack::MAX_DEPTH;
 use super::partition::Task;
 use super::reference::Reference;
@@ -20,24 +21,19 @@ pub(super) const PARALLEL: usize = 4096;
 
 /// The references of all triangles of `mesh`.
 pub(super) fn references(mesh: &Mesh) -> Vec<Reference> {
-    (0..mesh.len() as u32)
-        .into_par_iter()
-        .map(|prim| Reference::new(mesh.triangle_bounds(prim), prim))
-        .collect()
+    let mut references = pages::with_capacity(mesh.len());
+    let reference = |prim| Reference::new(mesh.triangle_bounds(prim), prim);
+    references.par_extend((0..mesh.len() as u32).into_par_iter().map(reference));
+    references
 }
 
 /// A tree over `references` whose leaves hold one each.
 pub(super) fn build(mut references: Vec<Reference>) -> BinaryTree {
     let count = references.len();
-    let mut spare = room(count, Reference::NONE);
+    let mut spare = pages::filled(count, Reference::NONE);
     grow(count, |node, place| {
         split(node, Task::new(&mut references, &mut spare, count), place);
     })
-}
-
-/// As many copies of `value`. In parallel, since the first touch of a page takes longer than writing it.
-pub(super) fn room<T: Copy + Send + Sync>(count: usize, value: T) -> Vec<T> {
-    (0..count).into_par_iter().map(|_| value).collect()
 }
 
 /// A tree with `count` leaves: `fill` gets the root and where what is below it goes.
@@ -45,8 +41,8 @@ pub(super) fn grow(count: usize, fill: impl FnOnce(&mut Node, Place)) -> BinaryT
     if count == 0 {
         return BinaryTree::EMPTY;
     }
-    let mut nodes = room(2 * count - 1, Node::NONE);
-    let mut references = room(count, 0);
+    let mut nodes = pages::filled(2 * count - 1, Node::NONE);
+    let mut references = pages::filled(count, 0);
     let (root, below) = nodes.split_at_mut(1);
     let place = Place {
         prims: &mut references,

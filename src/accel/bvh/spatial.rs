@@ -19,6 +19,7 @@ use crate::geometry::Aabb;
 use crate::scene::Mesh;
 
 use super::super::clip::clipped_bounds;
+use super::super::pages;
 use super::super::sah::half_area;
 use super::binned::{self, PARALLEL, Place};
 use super::chop::{self, Plane};
@@ -34,11 +35,11 @@ const OVERLAP: f64 = 1e-5;
 
 /// A tree over `mesh` whose leaves hold one reference each.
 pub(super) fn build(mesh: &Mesh) -> BinaryTree {
-    let mut references = binned::references(mesh);
-    let count = references.len();
+    let count = mesh.len();
     let more = (MORE * count as f64) as usize;
-    references.extend(binned::room(more, Reference::NONE));
-    let mut spare = binned::room(references.len(), Reference::NONE);
+    let mut references = binned::references(mesh);
+    references.resize(count + more, Reference::NONE);
+    let mut spare = pages::filled(count + more, Reference::NONE);
     let builder = Builder {
         mesh,
         overlap: OVERLAP * half_area(&mesh.bounds()),

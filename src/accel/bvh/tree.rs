@@ -58,7 +58,8 @@ impl Node {
 /// once; with [`Build::Binned`] only one leaf does, and its box contains the triangle's.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::accel) struct BinaryTree {
-    /// The root is first; children lie side by side, behind their parent. Empty for an empty mesh.
+    /// The root is first; children lie side by side, behind their parent. Behind the children of a node lies what is below
+    /// the first, then what is below the second, with nothing between. Empty for an empty mesh.
     pub nodes: Vec<Node>,
     /// Triangle indices in the order of the leaves.
     pub references: Vec<u32>,

@@ -24,7 +24,7 @@ pub(super) fn depth(nodes: &[Node]) -> u32 {
     deepest
 }
 
-/// Checks that every node is reached once, behind its parent and within the stack's depth, that boxes contain those
+/// Checks that every node is reached once, in order and within the stack's depth, that boxes contain those
 /// below them, and that the boxes of the leaves that list a triangle together contain it.
 pub(super) fn validate(tree: &BinaryTree, mesh: &Mesh) -> Result<(), String> {
     if mesh.is_empty() != tree.nodes.is_empty() {
@@ -63,6 +63,8 @@ fn references(tree: &BinaryTree, mesh: &Mesh) -> Result<Vec<(u32, usize)>, Strin
     if tree.nodes.is_empty() {
         open.clear();
     }
+    // Where the next children lie, going down on the first side first.
+    let mut next = 1;
     while let Some((index, depth, outer)) = open.pop() {
         let Some(node) = tree.nodes.get(index) else {
             return Err(format!("node {index} does not exist"));
@@ -79,11 +81,12 @@ fn references(tree: &BinaryTree, mesh: &Mesh) -> Result<Vec<(u32, usize)>, Strin
         }
         let first = node.first as usize;
         if !node.is_leaf() {
-            if first <= index {
-                return Err(format!("the children of node {index} are not behind it"));
+            if first != next {
+                return Err(format!("the children of node {index} are out of order"));
             }
-            open.push((first, depth + 1, bounds));
+            next += 2;
             open.push((first + 1, depth + 1, bounds));
+            open.push((first, depth + 1, bounds));
             continue;
         }
         if first + node.count as usize > tree.references.len() {

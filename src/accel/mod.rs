@@ -28,6 +28,7 @@ use crate::kernel;
 use crate::registry::{Choice, ChoiceError, ParamSpec, Params};
 use crate::scene::Mesh;
 
+mod auto;
 mod batch;
 mod behind;
 mod brute;
@@ -58,6 +59,7 @@ mod testbed;
 mod traced;
 mod visit;
 
+pub use auto::picked;
 pub use batch::Rays;
 use behind::Behind;
 pub use brute::Brute;
@@ -318,6 +320,7 @@ pub static ACCELERATORS: &[AcceleratorEntry] = &[
     bsp_tree::ENTRY,
     bvh::ENTRY,
     bvh_wide::ENTRY,
+    auto::ENTRY,
     peers::OBVHS,
     peers::BVH_CRATE,
     peers::EMBREE,

@@ -82,6 +82,7 @@ impl Live {
             id,
             config: config.clone(),
             n,
+            picked: accel::picked(&config.accel, at.mesh),
             triangles: at.mesh.len() as u64,
             ray_count: count as u64,
             build_ms,

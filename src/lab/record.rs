@@ -67,6 +67,9 @@ pub struct RunRecord {
     pub config: RunConfig,
     /// The resolution that was built.
     pub n: Option<u32>,
+    /// What `auto` picked, as it is written on the command line; `None` for the others.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub picked: Option<String>,
     /// Triangles of the scene.
     pub triangles: u64,
     /// Rays of a sample.

@@ -272,6 +272,7 @@ mod tests {
             id: config.id(),
             config,
             n: Some(8),
+            picked: None,
             triangles: 1,
             ray_count: 1,
             build_ms: vec![0.1],

@@ -127,7 +127,8 @@ pub struct Run {
     pub triangles: u64,
     /// Accelerator.
     pub accel: String,
-    /// Its parameters and the kernel's; `n_rule: "auto"` where the predictor chose n.
+    /// Its parameters and the kernel's; `n_rule: "auto"` where the predictor chose n, `picked: "bvh-wide:…"` what
+    /// `auto` built.
     pub params: Params,
     /// Resolution.
     pub n: Option<u32>,

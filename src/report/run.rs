@@ -32,6 +32,9 @@ impl From<&RunRecord> for Run {
         if config.n == Some(NRule::Auto) {
             params.insert("n_rule", Value::Text("auto".to_owned()));
         }
+        if let Some(picked) = &record.picked {
+            params.insert("picked", Value::Text(picked.clone()));
+        }
         Self {
             id: record.id.clone(),
             scene: config.scene.clone(),

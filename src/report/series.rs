@@ -19,6 +19,9 @@ use super::Run;
 /// The key under which a run's `params` say that the predictor chose n.
 const N_RULE: &str = "n_rule";
 
+/// The key under which they say what `auto` picked.
+const PICKED: &str = "picked";
+
 /// What a chart shows over n.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Quantity {
@@ -306,7 +309,7 @@ fn label<'a>(
     let defaults = Params::defaults(specs);
     params
         .iter()
-        .filter(|(key, _)| *key != N_RULE)
+        .filter(|(key, _)| ![N_RULE, PICKED].contains(key))
         .filter_map(|(key, value)| Some((ours(key)?, value)))
         .filter(|pair| !defaults.iter().any(|default| default == *pair))
         .fold(name.to_owned(), |label, (key, value)| {
@@ -379,6 +382,9 @@ mod tests {
         grid.params = fixture::params(&[("mystery", "7"), ("n_rule", "auto")]);
         assert_eq!(accel_label(&grid), "grid:mystery=7");
         assert_eq!(kernel_label(&grid), "woop");
+        let mut auto = run("auto", None);
+        auto.params = fixture::params(&[("picked", "bvh-wide:build=reinsert")]);
+        assert_eq!(accel_label(&auto), "auto");
         let mut sheet = run("bvh", None);
         sheet.kernel = "sheet-unsigned".to_owned();
         for (eps, label) in [

@@ -79,6 +79,7 @@ fn record(id: &str, config: &RunConfig, speeds: &[f64]) -> Box<RunRecord> {
         id: id.to_owned(),
         config: config.clone(),
         n,
+        picked: None,
         triangles: 6320,
         ray_count: 65_536,
         build_ms: vec![1.5 * cells],

@@ -132,6 +132,7 @@ fn blank(id: &str, config: &RunConfig) -> Run {
         id: id.to_owned(),
         config: config.clone(),
         n: None,
+        picked: None,
         triangles: 0,
         ray_count: config.ray_count as u64,
         build_ms: Vec::new(),

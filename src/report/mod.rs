@@ -16,6 +16,7 @@ pub mod plot;
 mod provenance;
 mod read;
 mod run;
+pub mod scaling;
 pub mod series;
 pub mod stability;
 mod table;

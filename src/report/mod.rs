@@ -28,5 +28,5 @@ pub use bundle::Bundle;
 pub use error::ReportError;
 pub use export::{ExportError, FORMATS, FormatEntry, export};
 pub use model::{Places, Provenance, Report, Run, SceneFacts};
-pub use peers::page as peers_page;
+pub use peers::{page as peers_page, structures as structures_page};
 pub use read::{SCHEMA_JSON, replace};

@@ -6,7 +6,8 @@
 //!
 //! SCENE is what the program takes: a path to an .obj, a bundled name, a family with its size. Without any, `plant`,
 //! `sphereflake:4` and `city:300`. Embree must be installed. Samples of all structures on the same rays are interleaved,
-//! one thread, default builds; a second, shorter run with two threads times builds and how speed grows. The page goes
+//! one thread, default builds; a second, shorter run with two threads times builds and how speed grows. A set has half a
+//! million rays, unless `--rays-count` says otherwise; grids are at `--n auto`, or at each n of LIST. The page goes
 //! to standard output; with `--out` it is kept as `peers.md`, with all samples in `report.json` beside it.
 //!
 //! What is measured and how is the lab's: this only chooses what to measure, and [`raylab::report`] makes the page.
@@ -23,8 +24,8 @@ use raylab::report;
 
 use measure::Options;
 
-/// A picture of 836 × 627. Structures that trace rays together need neighbours: on fewer rays of the same camera packets are
-/// wider in the scene, and both sides lose. Beyond this speeds hardly change.
+/// A picture of 836 × 627. Packets are rays of neighbouring pixels: the fewer pixels a picture has, the wider its packets are
+/// in the scene and the less they gain. `--rays-count` shows how much.
 const RAYS: usize = 1 << 19;
 
 /// One share of what is measured: accelerators and a kernel on some ray sets.

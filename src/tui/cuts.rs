@@ -65,10 +65,11 @@ pub(super) fn corners(mesh: &Mesh, inspection: &Inspection) -> Vec<(u32, [Vec3; 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::accel;
     use crate::lab::{self, Plan};
     use crate::oracle::Oracle;
+    use crate::scene;
     use crate::tui::picture::Wish;
-    use crate::{accel, scene};
 
     #[test]
     fn brute_force_keeps_what_was_hit_and_no_more_than_can_be_drawn() {

@@ -37,7 +37,7 @@ const BELOW: f64 = 36.0;
 /// Between the labels of a column and the next column.
 const APART: f64 = 18.0;
 /// Name of the axis below the last row.
-const AXIS_NAME: f64 = 14.0;
+const AXIS_NAME: f64 = 18.0;
 
 /// One cost of all families, on the same axis.
 struct Row {
@@ -230,7 +230,7 @@ impl Sheet {
             canvas.text(&name, (self.left(column), TOP + 12.0), Anchor::Start, face);
         }
         let middle = f64::midpoint(self.left(0), self.left(self.families.len() - 1) + self.wide);
-        let below = (middle, TOP + NAMES + self.height() + 6.0);
+        let below = (middle, TOP + NAMES + self.height() + 10.0);
         canvas.text("triangles", below, Anchor::Middle, quiet_face(theme));
     }
 }

@@ -11,6 +11,7 @@
 //! ```
 
 use crate::report::Report;
+use crate::report::scaling::table::exponent_text;
 use crate::report::scaling::{self, COSTS, Setting, curves, families};
 use crate::report::series::{Quantity, Series};
 
@@ -36,6 +37,8 @@ const ABOVE: f64 = 24.0;
 const BELOW: f64 = 36.0;
 /// Between the labels of a column and the next column.
 const APART: f64 = 18.0;
+/// Straight pieces of a guide.
+const PIECES: i32 = 40;
 /// Name of the axis below the last row.
 const AXIS_NAME: f64 = 18.0;
 
@@ -148,11 +151,9 @@ fn plan(report: &Report, setting: &Setting, theme: &Theme) -> Option<Sheet> {
 
 /// `curve` as a line to draw, with its exponent as the figure beside its name.
 fn fitted(looks: &Looks, curve: scaling::Curve) -> Curve {
-    let figure = curve.power().map(|fit| {
-        // No minus before a zero.
-        let exponent = (fit.slope * 100.0).round() / 100.0 + 0.0;
-        format!("N^{exponent:.2}").replace('-', "−")
-    });
+    let figure = curve
+        .power()
+        .map(|fit| format!("N^{}", exponent_text(fit.slope)));
     let series = Series {
         label: curve.label,
         points: curve.points,
@@ -252,8 +253,7 @@ fn draw_guide(canvas: &mut Canvas, theme: &Theme, plane: &Plane, panel: &Panel) 
         Quantity::Build => start * n / first,
         _ => start * n.ln() / first.ln(),
     };
-    const STEPS: i32 = 40;
-    let n = (0..=STEPS).map(|i| first * (last / first).powf(f64::from(i) / f64::from(STEPS)));
+    let n = (0..=PIECES).map(|i| first * (last / first).powf(f64::from(i) / f64::from(PIECES)));
     let line: Vec<At> = n
         .filter(|n| value(*n) < plane.y.hi)
         .map(|n| plane.at(n, value(n)))

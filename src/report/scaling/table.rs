@@ -149,7 +149,7 @@ fn row(growth: &Growth) -> Vec<String> {
 fn exponent(laws: Option<Laws>) -> String {
     laws.map_or_else(
         || "–".to_owned(),
-        |l| with_share(format!("{:.2}", l.exponent + 0.0), l.exponent_r2),
+        |l| with_share(&exponent_text(l.exponent), l.exponent_r2),
     )
 }
 
@@ -157,12 +157,19 @@ fn exponent(laws: Option<Laws>) -> String {
 fn a_doubling(laws: Option<Laws>) -> String {
     laws.map_or_else(
         || "–".to_owned(),
-        |l| with_share(measured(l.a_doubling), l.a_doubling_r2),
+        |l| with_share(&measured(l.a_doubling).replace('-', "−"), l.a_doubling_r2),
     )
 }
 
-fn with_share(value: String, r2: f64) -> String {
-    format!("{} ({r2:.3})", value.replace('-', "−"))
+fn with_share(value: &str, r2: f64) -> String {
+    format!("{value} ({r2:.3})")
+}
+
+/// An exponent in two decimals, 0 without a sign.
+pub(in crate::report) fn exponent_text(exponent: f64) -> String {
+    // The sum makes a zero of a negative one.
+    let rounded = (exponent * 100.0).round() / 100.0 + 0.0;
+    format!("{rounded:.2}").replace('-', "−")
 }
 
 /// What the columns mean, a sentence each.
@@ -240,6 +247,12 @@ mod tests {
         assert_eq!(json.as_array().unwrap().len(), 6);
         assert_eq!(json[2]["kernel"], "woop");
         assert_eq!(json[2]["steps_per_ray"]["nearer"], "logarithm");
+    }
+
+    #[test]
+    fn exponents_have_two_decimals_and_zero_no_sign() {
+        let texts = [1.049, -0.004, -0.1, 0.0].map(exponent_text);
+        assert_eq!(texts, ["1.05", "0.00", "−0.10", "0.00"]);
     }
 
     #[test]

@@ -74,7 +74,7 @@ pub struct Sweep {
     pub done: f64,
     /// Estimated seconds to the end, once known.
     pub seconds_left: Option<f64>,
-    /// When it began, by [`State::clock`].
+    /// When it began, by [`super::state::State::clock`].
     pub began: f64,
     /// When it ended.
     pub ended: Option<f64>,

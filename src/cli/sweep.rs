@@ -40,6 +40,9 @@ pub fn run(args: &SweepArgs) -> Result<(), Failure> {
         print(&format!("{text}\n"))?;
     } else {
         print(&table::runs(&report.runs))?;
+        if let Some(growths) = table::growths(&report.runs) {
+            print(&format!("\n{growths}"))?;
+        }
     }
     judge(&report, &outcome)
 }

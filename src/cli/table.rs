@@ -1,5 +1,6 @@
 //! Tables for people.
 
+use crate::report::scaling::{self, Growth, Laws};
 use crate::report::series::{accel_label, kernel_label};
 use crate::report::{Accuracy, ErrorSpread, Fallbacks, Rate, Run};
 
@@ -41,6 +42,65 @@ fn row(run: &Run) -> [String; 13] {
             (_, true, errors) => format!("yes, {errors} kernel errors"),
             (_, false, _) => "NO".to_owned(),
         },
+    ]
+}
+
+/// One row an accelerator and family of which it was run on enough sizes: how build and rays grow with the number N of
+/// triangles, each as exponent of N, rays also as what a doubling of N adds, with the share of the variance that the law
+/// explains. `None` where there is none.
+pub fn growths(runs: &[Run]) -> Option<String> {
+    let header = [
+        "family",
+        "accel",
+        "kernel",
+        "rays",
+        "thr",
+        "sizes",
+        "build N^",
+        "R2",
+        "ns/ray N^",
+        "R2",
+        "a doubling",
+        "R2",
+        "steps N^",
+        "R2",
+        "a doubling",
+        "R2",
+    ];
+    let sides = std::array::from_fn(|column| match column {
+        0..=3 => Side::Left,
+        _ => Side::Right,
+    });
+    let mut rows = vec![header.map(str::to_owned)];
+    rows.extend(scaling::growths(runs).iter().map(row_of_growth));
+    (rows.len() > 1).then(|| columns(&rows, &sides))
+}
+
+fn row_of_growth(growth: &Growth) -> [String; 16] {
+    let figure = |laws: Option<Laws>, of: fn(Laws) -> f64| {
+        laws.map_or_else(dash, |laws| significant(of(laws)))
+    };
+    let share = |laws: Option<Laws>, of: fn(Laws) -> f64| {
+        laws.map_or_else(dash, |laws| format!("{:.3}", of(laws)))
+    };
+    let (build, time, steps) = (growth.build_ms, growth.ns_per_ray, growth.steps_per_ray);
+    [
+        growth.family.clone(),
+        growth.accel.clone(),
+        growth.setting.kernel.clone(),
+        growth.setting.rays.clone(),
+        growth.setting.threads.to_string(),
+        growth.sizes.to_string(),
+        figure(build, |l| l.exponent),
+        share(build, |l| l.exponent_r2),
+        figure(time, |l| l.exponent),
+        share(time, |l| l.exponent_r2),
+        figure(time, |l| l.a_doubling),
+        share(time, |l| l.a_doubling_r2),
+        figure(steps, |l| l.exponent),
+        share(steps, |l| l.exponent_r2),
+        figure(steps, |l| l.a_doubling),
+        share(steps, |l| l.a_doubling_r2),
     ]
 }
 

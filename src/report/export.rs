@@ -11,7 +11,7 @@ use thiserror::Error;
 use crate::registry::ChoiceError;
 
 use super::plot::{self, PlotFormat};
-use super::{Report, csv, html, markdown, peers};
+use super::{Report, csv, html, markdown, peers, scaling};
 
 /// Why a report was not written.
 #[derive(Debug, Error)]
@@ -80,6 +80,17 @@ pub const FORMATS: &[FormatEntry] = &[
         name: "md",
         about: "Tables in Markdown, for a README or a pull request.",
         write: |report, dir| Ok(vec![put(dir, "report.md", markdown::page(report))?]),
+    },
+    FormatEntry {
+        name: "scaling",
+        about: "How build and tracing grow with the number of triangles: fitted laws, in Markdown and JSON.",
+        write: |report, dir| {
+            let page = put(dir, "scaling.md", scaling::table::page(report))?;
+            Ok(vec![
+                page,
+                put(dir, "scaling.json", scaling::table::json(report))?,
+            ])
+        },
     },
     FormatEntry {
         name: "peers",
@@ -157,10 +168,7 @@ mod tests {
 
     #[test]
     fn every_format_writes_files_that_exist_and_no_others() {
-        let report = fixture::report(vec![
-            fixture::run("grid", Some(4)),
-            fixture::run("bvh", None),
-        ]);
+        let report = fixture::report(fixture::growing());
         let dir = tempfile::tempdir().unwrap();
         let mut written = 0;
         for format in FORMATS {

@@ -225,6 +225,26 @@ pub fn teapot() -> Report {
     report(runs)
 }
 
+/// Three accelerators over four sizes of a soup and three of a sphereflake.
+pub fn growing() -> Vec<Run> {
+    let scenes = [
+        ("soup:1000", 1_000),
+        ("soup:10000", 10_000),
+        ("soup:100000", 100_000),
+        ("soup:1000000", 1_000_000),
+        ("sphereflake:1", 12_802),
+        ("sphereflake:2", 116_482),
+        ("sphereflake:4", 928_000),
+    ];
+    let mut runs = Vec::new();
+    for (scene, triangles) in scenes {
+        for (accel, n) in [("grid", Some(32)), ("kd-tree", None), ("bvh", None)] {
+            runs.push(run_of(scene, triangles, "primary", 1, accel, n));
+        }
+    }
+    runs
+}
+
 /// A run that was judged: `wrong` of 65,536 edge rays, half of them leaks, at this speed.
 pub fn judged(kernel: &str, offset: f64, speed: f64, wrong: u64) -> Run {
     let words = format!("{kernel}/{offset}");

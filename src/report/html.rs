@@ -4,6 +4,7 @@
 use super::judged::{Course, courses, drifts, places, tuned};
 use super::plot::text::{css, escape};
 use super::plot::{self, Kind, Subject};
+use super::scaling;
 use super::series::panels;
 use super::table::{self, Table, WORDS};
 use super::{ExportError, Report};
@@ -49,6 +50,17 @@ pub(super) fn page(report: &Report) -> Result<String, ExportError> {
         html.push("</ul></nav>\n".to_owned());
     }
     html.extend(plot::svg(report, &Subject::Overview)?);
+    let growths = scaling::growths(&report.runs);
+    for setting in scaling::settings(&report.runs) {
+        let title = escape(&setting.to_string());
+        html.push(format!("<h2>How costs grow with triangles: {title}</h2>\n"));
+        html.extend(plot::svg(report, &Subject::Scaling(setting.clone()))?);
+        html.push(tabulated(&scaling::table::table(&growths, &setting)));
+        html.push(format!(
+            "<p>{}</p>\n",
+            scaling::table::WORDS.replace('*', "")
+        ));
+    }
     for course in courses(&report.runs) {
         html.push(accuracy(report, &course)?);
     }

@@ -2,6 +2,7 @@
 
 use super::Report;
 use super::judged::courses;
+use super::scaling;
 use super::series::panels;
 use super::table::{self, Table, WORDS};
 
@@ -14,6 +15,13 @@ pub(super) fn page(report: &Report) -> String {
         text.push(format!("\n## {}\n\n", escaped(&key.to_string())));
         text.push("The fastest run of each accelerator.\n\n".to_owned());
         text.push(tabulated(&fastest));
+    }
+    let growths = scaling::growths(&report.runs);
+    for setting in scaling::settings(&report.runs) {
+        let title = escaped(&setting.to_string());
+        text.push(format!("\n## How costs grow with triangles: {title}\n\n"));
+        text.push(format!("{}\n\n", scaling::table::WORDS));
+        text.push(tabulated(&scaling::table::table(&growths, &setting)));
     }
     for course in courses(&report.runs) {
         let title = escaped(&course.to_string());
@@ -45,7 +53,8 @@ pub(super) fn page(report: &Report) -> String {
     text.concat()
 }
 
-fn tabulated(table: &Table) -> String {
+/// `table` in Markdown.
+pub(super) fn tabulated(table: &Table) -> String {
     let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
     let mut text = vec![line(table.head.iter().map(|&h| h.to_owned()).collect())];
     let rule = (0..table.head.len()).map(|i| if i < WORDS { "---" } else { "---:" }.to_owned());

@@ -35,10 +35,12 @@ pub enum Quantity {
     Build,
     /// Structure and packed triangles.
     Memory,
+    /// Time that a ray takes: what speed is the inverse of. Of charts over the number of triangles, not of those over n.
+    Time,
 }
 
 impl Quantity {
-    /// All of them, in the order in which they are shown.
+    /// All that are charted over n, in the order in which they are shown.
     pub const ALL: [Self; 5] = [
         Self::Speed,
         Self::Steps,
@@ -56,6 +58,7 @@ impl Quantity {
             Self::Tests => "tests per ray",
             Self::Build => "build time",
             Self::Memory => "memory",
+            Self::Time => "time per ray",
         }
     }
 
@@ -67,6 +70,7 @@ impl Quantity {
             Self::Steps | Self::Tests => "",
             Self::Build => "ms",
             Self::Memory => "MiB",
+            Self::Time => "ns",
         }
     }
 
@@ -80,7 +84,7 @@ impl Quantity {
     }
 
     /// Value and interval of one run; `None` where it has none, e.g. before its first sample.
-    fn of(self, run: &Run) -> Option<[f64; 3]> {
+    pub(super) fn of(self, run: &Run) -> Option<[f64; 3]> {
         let [y, lo, hi] = match self {
             Self::Speed if run.mrays_per_s.samples.is_empty() && run.mrays_per_s.median == 0.0 => {
                 return None;
@@ -94,6 +98,11 @@ impl Quantity {
             Self::Steps => [run.steps()?; 3],
             Self::Tests => [run.tests()?; 3],
             Self::Memory => [run.memory_bytes as f64 / f64::from(1 << 20); 3],
+            // The slowest ray takes longest.
+            Self::Time => {
+                let speed = &run.mrays_per_s;
+                [speed.median, speed.hi, speed.lo].map(|mrays_per_s| 1e3 / mrays_per_s)
+            }
         };
         let within = |x: f64| x.is_finite() && x >= 0.0;
         // A missing or foreign interval shrinks to the value: it never hides the point.
@@ -234,7 +243,7 @@ fn add_prediction(line: &mut Series, run: &Run, quantity: Quantity, n: f64) {
     let value = match quantity {
         Quantity::Steps => prediction.steps,
         Quantity::Tests => prediction.tests,
-        Quantity::Speed | Quantity::Build | Quantity::Memory => return,
+        _ => return,
     };
     if value.is_finite() && value >= 0.0 {
         put(&mut line.predicted, |p| p.0, (n, value));

@@ -7,7 +7,7 @@
 use std::path::Path;
 
 use super::{Scene, SceneEntry, SceneError, bundled, family, obj};
-use crate::registry::{ChoiceError, ParamSpec};
+use crate::registry::{ChoiceError, ParamKind, ParamSpec};
 
 /// The most triangles that a procedural scene may have: about 1 GB of mesh, far beyond what is worth waiting for.
 pub const MAX_TRIANGLES: u64 = 20_000_000;
@@ -186,10 +186,47 @@ pub fn check(spec: &str) -> Result<(), SceneError> {
     }
 }
 
+/// The family whose sizes `spec` is one of: `soup` for `soup:1000`. Scenes of one family differ in their whole numbers
+/// alone; other sizes that are not the default belong to the name: `soup, s = 0.5`.
+///
+/// `None` for a file, a scene without sizes, and what names no scene.
+#[must_use]
+pub fn family_of(spec: &str) -> Option<String> {
+    let Ok(Source::Row(row, sizes)) = source(spec) else {
+        return None;
+    };
+    let shape = row.params.iter().enumerate().filter_map(|(i, param)| {
+        let value = sizes.optional(i)?;
+        let usual = number(param, param.default).ok() == Some(value);
+        let shape = matches!(param.kind, ParamKind::Float { .. }) && !usual;
+        shape.then(|| format!(", {} = {value}", param.name))
+    });
+    let family = row.name.to_owned() + &shape.collect::<String>();
+    (!row.params.is_empty()).then_some(family)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::geometry::Ray;
+
+    #[test]
+    fn a_family_is_a_name_with_what_is_no_number_of_things() {
+        for (spec, family) in [
+            ("soup:1000", Some("soup")),
+            ("soup:1000,1", Some("soup")),
+            ("soup:20,0.5", Some("soup, s = 0.5")),
+            ("soup", Some("soup")),
+            ("sphereflake:2", Some("sphereflake")),
+            ("sphereflake:2,3", Some("sphereflake")),
+            ("cornell", None),
+            ("a/soup:1000.obj", None),
+            ("soup:x", None),
+            ("broth:9", None),
+        ] {
+            assert_eq!(family_of(spec).as_deref(), family, "{spec}");
+        }
+    }
 
     #[test]
     fn every_row_loads_its_example_with_as_many_triangles_as_predicted() {

@@ -21,7 +21,7 @@ mod obj;
 mod polygon;
 
 pub use camera::Camera;
-pub use catalog::{MAX_TRIANGLES, SCENES, Sizes, check, load};
+pub use catalog::{MAX_TRIANGLES, SCENES, Sizes, check, family_of, load};
 pub use error::SceneError;
 pub use mesh::{Mesh, MeshError};
 

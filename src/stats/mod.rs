@@ -5,6 +5,7 @@
 
 mod bootstrap;
 mod histogram;
+mod line;
 mod order;
 mod proportion;
 
@@ -12,6 +13,7 @@ use serde::{Deserialize, Serialize};
 
 pub use bootstrap::{Interval, median_interval, ratio_interval};
 pub use histogram::Histogram;
+pub use line::Line;
 pub use order::{mad, median, percentile};
 pub use proportion::upper95;
 

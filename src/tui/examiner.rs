@@ -1,34 +1,28 @@
 //! The examiner thread: follows one ray through two accelerators, and cuts the scene by planes through the ray. While
 //! something is measured it works only between samples.
 
-use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::mpsc::Sender;
 use std::thread;
 
 use super::app::Message;
+use super::cuts::{corners, outlines, reach};
 use super::desk::Desk;
 use super::inspect::{Aim, Examined, InspectNews, Made, Request, Side, Source};
-use super::slice::{Frame, Plane, Segment};
+use super::slice::Segment;
 use super::steering::Steering;
 use super::studio::panic_message;
 use super::update::Event;
 use crate::accel::{self, Accelerator};
 use crate::geometry::{Ray, Vec3};
-use crate::lab::{self, Inspection, NRule, Place, Subject};
+use crate::lab::{self, NRule, Place, Subject};
 use crate::oracle::Oracle;
 use crate::registry::Choice;
-use crate::scene::{self, Camera, Material, Mesh, Scene};
+use crate::scene::{self, Camera, Material, Scene};
 
 /// Structures that are kept, so that going back to one is quick.
 const KEPT: usize = 4;
-
-/// Most triangles whose corners are kept for the drawing, beside those that were hit: brute force offers all.
-const MOST_CORNERS: usize = 4096;
-
-/// Most segments of an outline: more than a large terminal has dots to show.
-const MOST_SEGMENTS: usize = 20_000;
 
 /// The examiner as others see it.
 #[derive(Debug, Clone)]
@@ -296,54 +290,6 @@ fn bare(made: &Made) -> Scene {
     }
 }
 
-/// Where the planes through the ray cut the scene; empty for an axis along the ray.
-fn outlines(mesh: &Mesh, ray: &Ray) -> [Vec<Segment>; 3] {
-    Plane::ALL.map(|plane| {
-        Frame::new(ray, plane).map_or_else(Vec::new, |frame| {
-            let all = 0..mesh.len() as u32;
-            let cuts = all.flat_map(|prim| frame.cut(&mesh.corners(prim)));
-            cuts.take(MOST_SEGMENTS).collect()
-        })
-    })
-}
-
-/// From where to where the scene reaches along the ray; a length of 1 for a scene without any.
-fn reach(mesh: &Mesh, ray: &Ray) -> [f64; 2] {
-    let plane = Plane::across(ray).first().copied();
-    let Some(frame) = plane.and_then(|plane| Frame::new(ray, plane)) else {
-        return [0.0, 1.0];
-    };
-    let corners = mesh.bounds().corners();
-    let along = corners.iter().map(|corner| frame.along(*corner));
-    let (lo, hi) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| {
-        (lo.min(x), hi.max(x))
-    });
-    if mesh.is_empty() || hi <= lo {
-        let middle = if lo.is_finite() { lo } else { 0.5 };
-        [middle - 0.5, middle + 0.5]
-    } else {
-        [lo, hi]
-    }
-}
-
-/// The corners of what was offered: all that was hit, and of the rest what came first.
-fn corners(mesh: &Mesh, inspection: &Inspection) -> Vec<(u32, [Vec3; 3])> {
-    let tests = || inspection.steps.iter().flat_map(|step| &step.tests);
-    let hit = tests().filter(|test| test.t.is_some());
-    let mut prims: BTreeSet<u32> = hit.take(MOST_CORNERS).map(|test| test.prim).collect();
-    for test in tests() {
-        if prims.len() >= MOST_CORNERS {
-            break;
-        }
-        prims.insert(test.prim);
-    }
-    prims.extend(inspection.truth.prims.iter().take(MOST_CORNERS));
-    prims
-        .into_iter()
-        .map(|prim| (prim, mesh.corners(prim)))
-        .collect()
-}
-
 #[cfg(test)]
 mod tests {
     use std::sync::mpsc::{Receiver, channel};
@@ -475,32 +421,5 @@ mod tests {
         let sides = found(&news);
         assert_eq!(Some(sides[0].ray), ray);
         assert!(!sides[0].inspection.right);
-    }
-
-    #[test]
-    fn brute_force_keeps_what_was_hit_and_no_more_than_can_be_drawn() {
-        let scene = scene::load("soup:20000").unwrap();
-        let ray = scene.camera.ray(0.5, 0.5, 1, 1);
-        let brute = accel::parse("brute").unwrap();
-        let kernel = Wish::first(&Plan::default()).kernel;
-        let built = accel::build(&scene.mesh, &brute, None, &kernel, u64::MAX).unwrap();
-        let subject = lab::Subject {
-            scene: "soup:20000",
-            accel: &brute,
-            n: None,
-            kernel: &kernel,
-        };
-        let inspection = lab::inspect(&subject, &*built, &Oracle::new(&scene.mesh), &ray);
-        let kept = corners(&scene.mesh, &inspection);
-        assert!(kept.len() <= 2 * MOST_CORNERS);
-        let hit = inspection.hit.unwrap().prim;
-        assert!(kept.iter().any(|(prim, _)| *prim == hit));
-    }
-
-    #[test]
-    fn an_empty_scene_has_a_reach_that_can_be_drawn() {
-        let scene = scene::load("empty").unwrap();
-        let [lo, hi] = reach(&scene.mesh, &Ray::new(Vec3::ZERO, Vec3::X));
-        assert!(lo < hi && (hi - lo).is_finite());
     }
 }

@@ -2,6 +2,10 @@
 
 use std::path::PathBuf;
 
+pub use super::experiment::{Experiment, Kept, Phase, Sweep};
+pub use super::screen::Screen;
+pub use super::shelved::{BundleRow, Opened, Reports};
+
 use super::inspect::Inspect;
 use super::keymap::{Place, Situation};
 use super::overlay::Overlay;
@@ -14,74 +18,8 @@ use super::table_view::TableView;
 use super::theme::Theme;
 use crate::lab::{self, Plan};
 use crate::preview::ColorMode;
+use crate::report::Run;
 use crate::report::series::Quantity;
-use crate::report::{Report, Run};
-
-/// A screen.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Screen {
-    /// Edit the plan, run it, watch.
-    Sweep,
-    /// The scene, live.
-    Preview,
-    /// One ray, step by step.
-    Inspect,
-    /// Curves over n.
-    Charts,
-    /// Speed against wrong decisions.
-    Pareto,
-    /// Where each kernel and accelerator breaks.
-    Stability,
-    /// Bundles on disk.
-    Reports,
-    /// All keys.
-    Help,
-}
-
-impl Screen {
-    /// All screens; the key of a screen is its place here, from 1.
-    pub const ALL: [Self; 8] = [
-        Self::Sweep,
-        Self::Preview,
-        Self::Inspect,
-        Self::Charts,
-        Self::Pareto,
-        Self::Stability,
-        Self::Reports,
-        Self::Help,
-    ];
-
-    /// Its name.
-    #[must_use]
-    pub fn title(self) -> &'static str {
-        match self {
-            Self::Sweep => "Sweep",
-            Self::Preview => "Preview",
-            Self::Inspect => "Inspect",
-            Self::Charts => "Charts",
-            Self::Pareto => "Pareto",
-            Self::Stability => "Stability",
-            Self::Reports => "Reports",
-            Self::Help => "Help",
-        }
-    }
-
-    /// Its key.
-    #[must_use]
-    pub fn number(self) -> usize {
-        Self::ALL
-            .iter()
-            .position(|&s| s == self)
-            .map_or(0, |at| at + 1)
-    }
-
-    /// The screen `steps` further round.
-    #[must_use]
-    pub fn turned(self, steps: isize) -> Self {
-        let at = self.number() as isize - 1;
-        Self::ALL[(at + steps).rem_euclid(Self::ALL.len() as isize) as usize]
-    }
-}
 
 /// Which panel of the sweep screen has the keys.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -90,124 +28,6 @@ pub enum Panel {
     Plan,
     /// The table of runs.
     Runs,
-}
-
-/// Where the sweep stands.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Phase {
-    /// Nothing has been run yet.
-    Idle,
-    /// It runs.
-    Running,
-    /// It waits before the next sample.
-    Paused,
-    /// It was asked to stop and ends its sample.
-    Stopping,
-    /// All runs are made.
-    Complete,
-    /// It was stopped.
-    Stopped,
-}
-
-impl Phase {
-    /// Whether something is under way, paused or about to stop included.
-    #[must_use]
-    pub fn is_running(self) -> bool {
-        matches!(self, Self::Running | Self::Paused | Self::Stopping)
-    }
-}
-
-/// What is measured in the background: one at a time, for they would disturb each other.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Experiment {
-    /// Speed over a plan.
-    Sweep,
-    /// Speed and wrong decisions.
-    Accuracy,
-    /// Where methods break.
-    Stability,
-}
-
-impl Experiment {
-    /// What it is called while it runs.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Sweep => "A sweep",
-            Self::Accuracy => "Judging accuracy",
-            Self::Stability => "The stability suite",
-        }
-    }
-
-    /// The screen that it is on.
-    #[must_use]
-    pub fn screen(self) -> Screen {
-        match self {
-            Self::Sweep => Screen::Sweep,
-            Self::Accuracy => Screen::Pareto,
-            Self::Stability => Screen::Stability,
-        }
-    }
-}
-
-/// The sweep.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Sweep {
-    /// Where it stands.
-    pub phase: Phase,
-    /// Its runs.
-    pub runs: Runs,
-    /// Share that is done, 0 to 1.
-    pub done: f64,
-    /// Estimated seconds to the end, once known.
-    pub seconds_left: Option<f64>,
-    /// When it began, by [`State::clock`].
-    pub began: f64,
-    /// When it ended.
-    pub ended: Option<f64>,
-    /// What becomes of it.
-    pub kept: Kept,
-}
-
-/// What becomes of what an experiment measures.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Kept {
-    /// The bundle that it is written to.
-    pub bundle: Option<PathBuf>,
-    /// Whether its report and plots are being written.
-    pub writing: bool,
-    /// Why what was measured is not all on disk.
-    pub unsaved: Option<String>,
-}
-
-impl Sweep {
-    fn idle() -> Self {
-        Self {
-            phase: Phase::Idle,
-            runs: Runs::default(),
-            done: 0.0,
-            seconds_left: None,
-            began: 0.0,
-            ended: None,
-            kept: Kept::default(),
-        }
-    }
-
-    /// A sweep that begins now.
-    #[must_use]
-    pub fn beginning(clock: f64) -> Self {
-        Self {
-            phase: Phase::Running,
-            began: clock,
-            ..Self::idle()
-        }
-    }
-
-    /// Whether a sweep is under way, paused ones included.
-    #[must_use]
-    pub fn is_running(&self) -> bool {
-        self.phase.is_running()
-    }
 }
 
 /// Where charts take their runs from.
@@ -246,73 +66,6 @@ pub struct Charts {
     pub source: Source,
     /// The marked line.
     pub marked: ChartLine,
-}
-
-/// A bundle in the results directory.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct BundleRow {
-    /// Its directory.
-    pub path: PathBuf,
-    /// Its name: the directory's.
-    pub name: String,
-    /// Start, RFC 3339; empty where unknown.
-    pub date: String,
-    /// Runs in the report or, where there is none yet, in the journal.
-    pub runs: usize,
-    /// What a reader should know, e.g. that the sweep was not finished.
-    pub note: String,
-}
-
-/// An opened report.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Opened {
-    /// The name of its bundle.
-    pub name: String,
-    /// The report.
-    pub report: Report,
-    /// Its runs.
-    pub runs: Runs,
-    /// How their table is looked at.
-    pub table: TableView,
-}
-
-impl Opened {
-    /// A report that was read from the bundle `name`.
-    #[must_use]
-    pub fn new(name: String, report: Report) -> Self {
-        Self {
-            name,
-            runs: Runs::reported(&report.runs),
-            report,
-            table: TableView::default(),
-        }
-    }
-}
-
-/// The reports screen.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Reports {
-    /// Bundles, newest first; `None` until the directory was read.
-    pub bundles: Option<Vec<BundleRow>>,
-    /// Why they could not be listed.
-    pub error: Option<String>,
-    /// Only bundles that contain this.
-    pub filter: String,
-    /// The marked line among those shown.
-    pub marked: usize,
-    /// The opened report; the keys go to its table while it is shown.
-    pub opened: Option<Opened>,
-}
-
-impl Reports {
-    /// The bundles that are shown.
-    pub fn shown(&self) -> impl Iterator<Item = &BundleRow> {
-        let filter = self.filter.to_lowercase();
-        self.bundles
-            .iter()
-            .flatten()
-            .filter(move |b| b.name.to_lowercase().contains(&filter))
-    }
 }
 
 /// A sentence above the footer.

@@ -7,7 +7,8 @@ use crate::registry::Choice;
 
 use super::case::CaseEntry;
 use super::model::Faults;
-use super::rows::{EXHIBITS, KERNELS, MISTAKES, OWN_REASONS, REASONS};
+use super::reasons::{MISTAKES, OWN_REASONS, REASONS};
+use super::rows::{EXHIBITS, KERNELS};
 use super::run::{accel_label, kernel_label};
 
 /// What one method is expected to get wrong on one case.

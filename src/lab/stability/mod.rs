@@ -21,6 +21,7 @@ mod dice;
 mod judge;
 mod known;
 mod model;
+mod reasons;
 mod reproduce;
 mod rows;
 mod run;

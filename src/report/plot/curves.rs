@@ -51,11 +51,20 @@ impl Column {
         }
     }
 
+    /// Of the figures beside the names: never larger than these.
+    fn figure_face(&self, theme: &Theme) -> Face {
+        let quiet = quiet_face(theme);
+        Face {
+            size: quiet.size.min(self.size),
+            ..quiet
+        }
+    }
+
     /// Width of the labels of `panel` with their leaders.
     pub fn width(&self, panel: &Panel, theme: &Theme) -> f64 {
         let width = |curve: &Curve| {
             let figure = self.figure(curve, panel.quantity);
-            let figure = figure.map_or(0.0, |f| 7.0 + quiet_face(theme).width(&f));
+            let figure = figure.map_or(0.0, |f| 7.0 + self.figure_face(theme).width(&f));
             self.face(theme).width(&curve.name) + figure
         };
         self.gutter + panel.curves.iter().map(width).fold(0.0, f64::max)
@@ -68,8 +77,8 @@ impl Column {
 
     /// The figure beside the name: the best speed and where, or the value of a level line.
     fn figure(&self, curve: &Curve, quantity: Quantity) -> Option<String> {
-        if !self.figures {
-            return None;
+        if !self.figures || curve.figure.is_some() {
+            return curve.figure.clone();
         }
         let series = &curve.series;
         if series.constant {
@@ -242,7 +251,8 @@ fn draw_labels(canvas: &mut Canvas, theme: &Theme, plane: &Plane, panel: &Panel,
         canvas.text(text, (x, base), Anchor::Start, face);
         if let Some(figure) = column.figure(curve, panel.quantity) {
             let x = x + face.width(text) + 7.0;
-            canvas.text(&figure, (x, base), Anchor::Start, quiet_face(theme));
+            let face = column.figure_face(theme);
+            canvas.text(&figure, (x, base), Anchor::Start, face);
         }
     }
 }

@@ -76,6 +76,8 @@ pub(super) struct Curve {
     pub series: Series,
     /// The series' label, shortened where it is long and stays distinct.
     pub name: String,
+    /// What stands beside the name where it is not the peak or the level.
+    pub figure: Option<String>,
     pub look: Look,
 }
 
@@ -230,33 +232,49 @@ pub(super) trait Plot {
 
 /// The panels of a figure that have values. A curve looks the same in every figure of a report.
 pub(super) fn panels(report: &Report, key: &PanelKey, kind: Kind) -> Vec<Panel> {
-    let mut known: Vec<String> = Vec::new();
-    for label in report.runs.iter().map(accel_label) {
-        if !known.contains(&label) {
-            known.push(label);
-        }
-    }
-    let names = names(&known);
-    let curve = |series: Series| {
-        let index = known.iter().position(|l| *l == series.label);
-        let index = index.unwrap_or_default();
-        Curve {
-            look: Look::of(index),
-            name: names[index].clone(),
-            series,
-        }
-    };
+    let looks = Looks::of(report);
     kind.quantities()
         .iter()
         .map(|&quantity| Panel {
             quantity,
             curves: series(&report.runs, key, quantity)
                 .into_iter()
-                .map(curve)
+                .map(|series| looks.curve(series))
                 .collect(),
         })
         .filter(|panel| !panel.curves.is_empty())
         .collect()
+}
+
+/// How the accelerators of a report look, the same in all its figures.
+pub(super) struct Looks {
+    labels: Vec<String>,
+    names: Vec<String>,
+}
+
+impl Looks {
+    pub fn of(report: &Report) -> Self {
+        let mut labels: Vec<String> = Vec::new();
+        for label in report.runs.iter().map(accel_label) {
+            if !labels.contains(&label) {
+                labels.push(label);
+            }
+        }
+        let names = names(&labels);
+        Self { labels, names }
+    }
+
+    /// `series` with its look; without a figure of its own.
+    pub fn curve(&self, series: Series) -> Curve {
+        let index = self.labels.iter().position(|l| *l == series.label);
+        let index = index.unwrap_or_default();
+        Curve {
+            look: Look::of(index),
+            name: self.names[index].clone(),
+            figure: None,
+            series,
+        }
+    }
 }
 
 /// `labels` as figures write them: long ones shortened in the middle unless two would then look the same.

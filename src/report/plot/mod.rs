@@ -10,6 +10,7 @@
 //! | `work` | steps and tests of a ray, measured and predicted |
 //! | `cost` | build time and memory |
 //! | `overview` | the speeds of all combinations as small multiples, where there is more than one |
+//! | `scaling` | build time, time and steps of a ray over the number of triangles, where a family was run at three sizes |
 //! | `pareto` | speed against wrong decisions, where the oracle judged |
 //! | `drift` | wrong decisions and error of t against the offset or the scale, where it judged at more than one |
 //! | `tuned` | wrong decisions and swaps against a kernel's parameter, where it judged several values |
@@ -25,6 +26,7 @@ use crate::lab::stability::Map;
 use super::Report;
 use super::export::{ExportError, make, put};
 use super::judged::{Along, Course, Tuned, courses, drifts, places, tuned};
+use super::scaling::{Setting, settings};
 use super::series::{PanelKey, panels};
 use crate::lab::Place;
 
@@ -43,6 +45,7 @@ mod overview;
 mod pareto;
 mod plane;
 mod raster;
+mod scaling;
 mod stability;
 mod theme;
 mod tuned;
@@ -149,6 +152,8 @@ pub enum Subject {
     Overview,
     /// One combination.
     One(PanelKey, Kind),
+    /// Costs over the number of triangles, all families of a setting.
+    Scaling(Setting),
     /// Speed against wrong decisions on one course, at a place.
     Pareto(Course, Place),
     /// Error on one course against the offset or the scale.
@@ -173,6 +178,7 @@ fn drawn(report: &Report, subject: &Subject, style: Style) -> Result<Option<Stri
     match subject {
         Subject::Overview => overview::svg(report, style),
         Subject::One(key, kind) => figure::svg(report, key, *kind, style),
+        Subject::Scaling(setting) => scaling::svg(report, setting, style),
         Subject::Pareto(course, place) => pareto::svg(report, course, *place, style),
         Subject::Drift(course, along) => drift::svg(report, course, *along, style),
         Subject::Tuned(course, tuned) => tuned::svg(report, course, tuned, style),
@@ -189,6 +195,11 @@ fn figures(report: &Report) -> Vec<(String, Subject)> {
             let subject = Subject::One(key.clone(), kind);
             figures.push((format!("{}-{stem}", kind.name()), subject));
         }
+    }
+    for setting in settings(&report.runs) {
+        let parts = [&setting.kernel, &last(&setting.rays)].map(|part| sanitised(part));
+        let stem = format!("scaling-{}-{}t", parts.join("-"), setting.threads);
+        figures.push((distinct(stem, &mut used), Subject::Scaling(setting)));
     }
     for course in courses(&report.runs) {
         let parts = [last(&course.scene), last(&course.rays)];

@@ -7,6 +7,7 @@ use resvg::usvg::{Group, Node, Options, Paint, Rect, Stroke, TextChunk, Tree};
 
 use super::*;
 use crate::report::fixture;
+use crate::report::scaling::curves;
 use crate::report::series::{accel_label, series};
 
 mod cases;
@@ -301,6 +302,33 @@ fn several_combinations_get_an_overview_that_names_each() {
     for key in panels(&report.runs) {
         let named = |(text, _): &&(String, Rect)| text.starts_with(&key.scene);
         assert!(texts.iter().any(|t| named(&t)), "{key}");
+    }
+}
+
+#[test]
+fn sizes_of_a_family_get_a_chart_that_names_every_accelerator_with_its_exponents() {
+    let report = fixture::report(fixture::growing());
+    let (name, subject) = figures(&report)
+        .into_iter()
+        .find(|(_, subject)| matches!(subject, Subject::Scaling(_)))
+        .unwrap();
+    assert_eq!(name, "scaling-woop-primary-1t");
+    let texts = texts(&parsed(&svg(&report, &subject).unwrap().unwrap()));
+    let count = |label: &str| texts.iter().filter(|(text, _)| text == label).count();
+    for family in ["soup", "sphereflake"] {
+        assert_eq!(count(family), 1, "{family}");
+    }
+    let Subject::Scaling(setting) = &subject else {
+        unreachable!()
+    };
+    for family in ["soup", "sphereflake"] {
+        for cost in super::super::scaling::COSTS {
+            for curve in curves(&report.runs, setting, family, cost) {
+                let exponent = format!("N^{:.2}", curve.power().unwrap().slope);
+                assert!(count(&exponent) >= 1, "{exponent}: {texts:?}");
+                assert_eq!(count(&curve.label), 6);
+            }
+        }
     }
 }
 

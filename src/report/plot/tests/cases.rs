@@ -4,7 +4,7 @@ use crate::lab::PerRay;
 use crate::registry::Value;
 use crate::report::Report;
 use crate::report::Run;
-use crate::report::fixture::{N, judged, params, report, run, run_of, summary, teapot};
+use crate::report::fixture::{N, growing, judged, params, report, run, run_of, summary, teapot};
 use crate::stats::Summary;
 
 /// Named reports, from the everyday to the nasty.
@@ -33,10 +33,33 @@ pub(super) fn all() -> Vec<(&'static str, Report)> {
         ("long-names", long_names()),
         ("short-lines", short_lines()),
         ("combinations", combinations()),
+        ("growing", report(growing())),
+        ("growing-many", growing_many()),
         ("judged", judged_methods()),
         ("tuned", tuned()),
         ("judged-alone", report(vec![judged("woop", 1e4, 3.0, 0)])),
     ]
+}
+
+/// Nine accelerators of one family, some without steps, one with values far off.
+fn growing_many() -> Report {
+    let mut runs = Vec::new();
+    for (size, triangles) in [(10, 1_002), (32, 10_242), (100, 100_002), (316, 998_562)] {
+        for i in 0..9 {
+            let accel = format!("accelerator-{i}");
+            let scene = format!("city:{size}");
+            let mut run = run_of(&scene, triangles, "random", 2, &accel, None);
+            scale(&mut run.mrays_per_s, 1.0 + 0.02 * f64::from(i));
+            if i % 3 == 1 {
+                run.per_ray = None;
+            }
+            if i == 8 && size > 30 {
+                run.build_ms = summary(1e9, 0.1, &run.id);
+            }
+            runs.push(run);
+        }
+    }
+    report(runs)
 }
 
 /// Methods of two offsets, many with the same rate and nearly the same speed.

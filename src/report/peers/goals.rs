@@ -1,0 +1,344 @@
+//! What is asked of raylab's accelerators beside Embree, and whether it is reached.
+
+use crate::report::series::{PanelKey, accel_label};
+use crate::report::{Report, Run};
+
+use super::aligned::aligned;
+use super::{build_ms, cell, fastest, short};
+
+/// Which runs of Embree a goal allows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Against {
+    /// Single rays or packets, medium or high quality.
+    Any,
+    /// Single rays, medium or high quality.
+    Single,
+    /// Single rays or packets over the tree of medium quality.
+    Medium,
+}
+
+/// What is asked of some accelerators on one ray set.
+struct Goal {
+    /// Of these, the fastest run counts on each scene.
+    own: &'static [&'static str],
+    rays: &'static [&'static str],
+    against: Against,
+    /// Asked of the geometric mean over scenes.
+    mean: f64,
+    /// Asked of each scene.
+    least: Option<f64>,
+}
+
+const WIDE: &[&str] = &["bvh-wide"];
+const GRIDS: &[&str] = &["grid-skip", "grid-2level"];
+const KD: &[&str] = &["kd-tree"];
+
+#[rustfmt::skip]
+const GOALS: &[Goal] = &[
+    Goal { own: WIDE, rays: &["primary"], against: Against::Any, mean: 2.0, least: Some(1.4) },
+    Goal { own: WIDE, rays: &["shadow"], against: Against::Any, mean: 1.2, least: Some(1.0) },
+    Goal { own: WIDE, rays: &["bounce"], against: Against::Any, mean: 1.25, least: Some(1.05) },
+    Goal { own: WIDE, rays: &["random"], against: Against::Any, mean: 1.5, least: Some(1.1) },
+    Goal { own: GRIDS, rays: &["primary"], against: Against::Single, mean: 0.95, least: Some(0.7) },
+    Goal { own: GRIDS, rays: &["bounce"], against: Against::Single, mean: 0.8, least: Some(0.6) },
+    Goal { own: KD, rays: &["primary"], against: Against::Single, mean: 0.9, least: None },
+    Goal { own: KD, rays: &["bounce"], against: Against::Single, mean: 0.45, least: None },
+    // What is built must trace as fast as what its build is compared with.
+    Goal { own: WIDE, rays: &["primary", "shadow", "bounce", "random"], against: Against::Medium, mean: 1.0, least: None },
+];
+
+/// A kernel, and Embree's test of the same kind.
+const PAIRS: [(&str, &str); 2] = [
+    ("woop", "embree-robust"),
+    ("moller-trumbore", "embree-fast"),
+];
+
+/// The structure whose builds, threads, memory and kernels are compared.
+const FAST: &str = "bvh-wide";
+
+/// A line of the table of goals.
+pub(super) struct Row {
+    pub what: String,
+    pub beside: String,
+    /// Asked of the geometric mean; `None` where the row is there for comparison.
+    pub mean: Option<f64>,
+    /// Asked of each scene.
+    pub least: Option<f64>,
+    /// By scene; `None` where a run is missing.
+    pub ratios: Vec<Option<f64>>,
+}
+
+/// Whether a goal is met.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Verdict {
+    Pass,
+    Miss,
+    /// Runs are missing.
+    Open,
+    /// Nothing is asked.
+    Shown,
+}
+
+impl Row {
+    fn geometric_mean(&self) -> Option<f64> {
+        let all: Option<Vec<f64>> = self.ratios.iter().copied().collect();
+        all.filter(|all| !all.is_empty()).map(|all| geometric(&all))
+    }
+
+    fn least_ratio(&self) -> Option<f64> {
+        self.ratios.iter().flatten().copied().min_by(f64::total_cmp)
+    }
+
+    pub fn verdict(&self) -> Verdict {
+        let (Some(mean), Some(least)) = (self.geometric_mean(), self.least_ratio()) else {
+            return Verdict::Open;
+        };
+        let Some(asked) = self.mean else {
+            return Verdict::Shown;
+        };
+        if mean >= asked && self.least.is_none_or(|asked| least >= asked) {
+            Verdict::Pass
+        } else {
+            Verdict::Miss
+        }
+    }
+}
+
+/// The table of goals.
+pub(super) fn table(report: &Report, scenes: &[String]) -> String {
+    let mut head = [
+        "goal",
+        "own : peer",
+        "mean",
+        "asked",
+        "least",
+        "asked",
+        "verdict",
+    ]
+    .map(str::to_owned)
+    .to_vec();
+    head.extend(scenes.iter().map(|scene| short(scene)));
+    let mut table = vec![head];
+    let rows = [
+        speeds(report, scenes),
+        builds(report, scenes),
+        kernels(report, scenes),
+        threads(report, scenes),
+        vec![memory(report, scenes)],
+    ];
+    table.extend(rows.iter().flatten().map(line));
+    aligned(&table)
+}
+
+fn line(row: &Row) -> Vec<String> {
+    let mut line = vec![
+        row.what.clone(),
+        row.beside.clone(),
+        cell(row.geometric_mean()),
+        cell(row.mean),
+        cell(row.least_ratio()),
+        cell(row.least),
+        match row.verdict() {
+            Verdict::Pass => "PASS",
+            Verdict::Miss => "MISS",
+            Verdict::Open => "not measured",
+            Verdict::Shown => "–",
+        }
+        .to_owned(),
+    ];
+    line.extend(row.ratios.iter().map(|ratio| cell(*ratio)));
+    line
+}
+
+/// The goals of speed, by kernel.
+fn speeds(report: &Report, scenes: &[String]) -> Vec<Row> {
+    let row = |goal: &Goal, (kernel, test): (&str, &str)| {
+        let against = match goal.against {
+            Against::Any => "any",
+            Against::Single => "single",
+            Against::Medium => "medium",
+        };
+        let ratio = |scene: &String| {
+            let of_rays = goal.rays.iter();
+            let of_rays =
+                of_rays.map(|rays| speed_ratio(report, scene, goal, rays, (kernel, test)));
+            let all: Option<Vec<f64>> = of_rays.collect();
+            all.map(|all| geometric(&all))
+        };
+        Row {
+            what: format!("{}, {}", goal.own.join(" / "), goal.rays.join(" + ")),
+            beside: format!("{kernel} : {test}, {against}"),
+            mean: Some(goal.mean),
+            least: goal.least,
+            ratios: scenes.iter().map(ratio).collect(),
+        }
+    };
+    GOALS
+        .iter()
+        .flat_map(|goal| PAIRS.map(|pair| row(goal, pair)))
+        .collect()
+}
+
+/// How many times as fast as Embree a goal's accelerators are on one scene and ray set, one thread.
+fn speed_ratio(
+    report: &Report,
+    scene: &str,
+    goal: &Goal,
+    rays: &str,
+    (kernel, test): (&str, &str),
+) -> Option<f64> {
+    let own = fastest(report, |run| {
+        goal.own.contains(&run.accel.as_str())
+            && run.kernel == kernel
+            && (run.scene.as_str(), run.rays.as_str(), run.threads) == (scene, rays, 1)
+            // What traces as fast as Embree's medium build must be what is built as fast.
+            && (goal.against != Against::Medium || is_default(run))
+    })?;
+    let key = PanelKey::of(own);
+    let peer = fastest(report, |run| {
+        let params = &run.params;
+        run.kernel == test
+            && PanelKey::of(run) == key
+            && (goal.against != Against::Single || params.text("mode") == "single")
+            && (goal.against != Against::Medium || params.text("quality") == "medium")
+    })?;
+    // Other rays are no comparison.
+    (own.ray_count == peer.ray_count).then(|| own.mrays_per_s.median / peer.mrays_per_s.median)
+}
+
+/// Whether no parameter of the accelerator differs from its default.
+fn is_default(run: &Run) -> bool {
+    accel_label(run) == run.accel
+}
+
+/// Build speeds at one and two threads.
+fn builds(report: &Report, scenes: &[String]) -> Vec<Row> {
+    let row = |threads: usize| {
+        let ratio = |scene: &String| {
+            let own = build_ms(report, scene, threads, |run| {
+                run.accel == FAST && run.kernel == "woop" && is_default(run)
+            })?;
+            let peer = build_ms(report, scene, threads, |run| {
+                run.kernel == "embree-robust" && run.params.text("quality") == "medium"
+            })?;
+            Some(peer / own)
+        };
+        let plural = if threads == 1 { "" } else { "s" };
+        Row {
+            what: format!("build of {FAST}, {threads} thread{plural}"),
+            beside: "woop : embree-robust, medium".to_owned(),
+            mean: Some(0.9),
+            least: Some(0.7),
+            ratios: scenes.iter().map(ratio).collect(),
+        }
+    };
+    [1, 2].map(row).into()
+}
+
+/// The fastest run that `which` picks on some rays of a scene.
+fn speed_of(
+    report: &Report,
+    (scene, rays, threads): (&str, &str, usize),
+    which: impl Fn(&Run) -> bool,
+) -> Option<f64> {
+    let here = |run: &Run| {
+        (run.scene.as_str(), run.rays.as_str(), run.threads) == (scene, rays, threads) && which(run)
+    };
+    fastest(report, here).map(|run| run.mrays_per_s.median)
+}
+
+/// What a watertight kernel costs.
+fn kernels(report: &Report, scenes: &[String]) -> Vec<Row> {
+    let row = |rays: &str| {
+        let ratio = |scene: &String| {
+            let own = |kernel: &str| {
+                speed_of(report, (scene, rays, 1), |run| {
+                    run.accel == FAST && run.kernel == kernel
+                })
+            };
+            Some(own("woop")? / own("moller-trumbore")?)
+        };
+        Row {
+            what: format!("watertight in {FAST}, {rays}"),
+            beside: "woop : moller-trumbore".to_owned(),
+            mean: Some(0.9),
+            least: None,
+            ratios: scenes.iter().map(ratio).collect(),
+        }
+    };
+    ["primary", "bounce"].map(row).into()
+}
+
+/// What two threads give, and what they give Embree on the same machine.
+fn threads(report: &Report, scenes: &[String]) -> Vec<Row> {
+    let row = |accel: &str, rays: &str| {
+        let ratio = |scene: &String| {
+            let own = |threads: usize| {
+                speed_of(report, (scene, rays, threads), |run| {
+                    run.accel == accel && ["woop", "embree-robust"].contains(&run.kernel.as_str())
+                })
+            };
+            Some(own(2)? / own(1)?)
+        };
+        Row {
+            what: format!("two threads in {accel}, {rays}"),
+            beside: "2 threads : 1 thread".to_owned(),
+            mean: (accel == FAST).then_some(1.9),
+            least: None,
+            ratios: scenes.iter().map(ratio).collect(),
+        }
+    };
+    [FAST, "embree"]
+        .iter()
+        .flat_map(|accel| ["primary", "bounce"].map(|rays| row(accel, rays)))
+        .collect()
+}
+
+/// Memory beside the peer that takes least.
+fn memory(report: &Report, scenes: &[String]) -> Row {
+    let ratio = |scene: &String| {
+        let runs = report.runs.iter();
+        let here: Vec<&Run> = runs
+            .filter(|run| run.scene == *scene && run.memory_bytes > 0)
+            .collect();
+        let own = |run: &&&Run| run.accel == FAST && run.kernel == "woop" && is_default(run);
+        let own = here.iter().find(own)?.memory_bytes;
+        let peers = here.iter().filter(|run| run.wrong_answers.is_some());
+        let leanest = peers.map(|run| run.memory_bytes).min()?;
+        Some(leanest as f64 / own as f64)
+    };
+    Row {
+        what: format!("memory of {FAST}"),
+        beside: "leanest peer : woop".to_owned(),
+        mean: Some(1.0 / 1.2),
+        least: None,
+        ratios: scenes.iter().map(ratio).collect(),
+    }
+}
+
+fn geometric(values: &[f64]) -> f64 {
+    (values.iter().map(|x| x.ln()).sum::<f64>() / values.len().max(1) as f64).exp()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_goal_is_missed_by_its_mean_or_by_one_scene() {
+        let row = |ratios: &[f64]| Row {
+            what: String::new(),
+            beside: String::new(),
+            mean: Some(2.0),
+            least: Some(1.4),
+            ratios: ratios.iter().map(|r| Some(*r)).collect(),
+        };
+        assert_eq!(row(&[1.5, 3.0]).verdict(), Verdict::Pass);
+        assert_eq!(row(&[1.5, 2.5]).verdict(), Verdict::Miss);
+        assert_eq!(row(&[1.3, 9.0]).verdict(), Verdict::Miss);
+        assert_eq!(row(&[]).verdict(), Verdict::Open);
+        let mut gap = row(&[3.0, 3.0]);
+        gap.ratios[1] = None;
+        assert_eq!(gap.verdict(), Verdict::Open);
+    }
+}

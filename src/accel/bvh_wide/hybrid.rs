@@ -23,7 +23,7 @@ use super::super::stack::MAX_DEPTH;
 use super::super::{Rays, Visitor};
 use super::stack::{Stack, Stacks};
 use super::walk::Walk;
-use super::{BvhWide, Child};
+use super::{BvhWide, Child, Node};
 
 /// Rays of a group.
 const GROUP: usize = 16;
@@ -54,7 +54,9 @@ struct Item {
 /// The children that wait for a group, and where each ray enters them.
 pub struct GroupStack {
     items: [Item; 8 * MAX_DEPTH],
-    entries: [[Row; 8]; MAX_DEPTH],
+    /// How many wait.
+    waits: usize,
+    entries: Vec<[Row; 8]>,
 }
 
 impl Default for GroupStack {
@@ -67,7 +69,8 @@ impl Default for GroupStack {
         };
         Self {
             items: [none; 8 * MAX_DEPTH],
-            entries: [[Row([0.0; GROUP]); 8]; MAX_DEPTH],
+            waits: 0,
+            entries: vec![[Row([0.0; GROUP]); 8]; MAX_DEPTH],
         }
     }
 }
@@ -200,6 +203,37 @@ fn gather<L: Lane<1>>(rays: &[Ray], indices: &[u32], part: impl Fn(&Ray) -> f32)
     L::from_fn(|lane| part(&rays[indices[lane.min(last)] as usize]))
 }
 
+/// Rays of a group under way.
+struct Group<L, V> {
+    slabs: SlabRays<L>,
+    visitors: [V; GROUP],
+    /// What begins beyond these changes nothing.
+    limits: [f32; GROUP],
+}
+
+/// Sixteen numbers in lanes.
+#[inline(always)]
+fn lanes_of<L: Lane<1>>(row: &[f32; GROUP]) -> L {
+    L::from_fn(|lane| row[lane & (GROUP - 1)])
+}
+
+/// The rays with these indices, a lane each, and their least `t`.
+#[inline(always)]
+fn gathered<L: Lane<1>>(rays: &[Ray], indices: &[u32]) -> (LaneRay<L>, L) {
+    let origin = LaneVec3 {
+        x: gather(rays, indices, |ray| ray.origin.x),
+        y: gather(rays, indices, |ray| ray.origin.y),
+        z: gather(rays, indices, |ray| ray.origin.z),
+    };
+    let dir = LaneVec3 {
+        x: gather(rays, indices, |ray| ray.dir.x),
+        y: gather(rays, indices, |ray| ray.dir.y),
+        z: gather(rays, indices, |ray| ray.dir.z),
+    };
+    let t_min = gather(rays, indices, |ray| ray.t_min);
+    (LaneRay { origin, dir }, t_min)
+}
+
 /// Traces the rays of a group, all from one octant.
 #[inline(always)]
 fn together<'a, R: Rays<'a>>(
@@ -209,114 +243,118 @@ fn together<'a, R: Rays<'a>>(
     stack: &mut Stack,
     waiting: &mut GroupStack,
 ) {
-    type L<'a, R> = <<R as Rays<'a>>::Isa as Isa>::Rays;
     let rays = batch.rays();
-    let lanes: LaneRay<L<'a, R>> = LaneRay {
-        origin: LaneVec3 {
-            x: gather(rays, indices, |ray| ray.origin.x),
-            y: gather(rays, indices, |ray| ray.origin.y),
-            z: gather(rays, indices, |ray| ray.origin.z),
-        },
-        dir: LaneVec3 {
-            x: gather(rays, indices, |ray| ray.dir.x),
-            y: gather(rays, indices, |ray| ray.dir.y),
-            z: gather(rays, indices, |ray| ray.dir.z),
-        },
-    };
+    let (lanes, t_min) = gathered::<<R::Isa as Isa>::Rays>(rays, indices);
     let lead = octant(&rays[indices[0] as usize]);
     let near = [lead & 1, lead >> 1 & 1, lead >> 2 & 1];
-    let t_min = gather(rays, indices, |ray| ray.t_min);
     let (slabs, plain) = SlabRays::new(&lanes, t_min, near, &tree.scene);
-    let all = (1_u32 << indices.len()) - 1;
-    let mut rest = all & !plain;
-    while rest != 0 {
-        let lane = rest.trailing_zeros() as usize;
-        rest &= rest - 1;
-        alone(tree, batch, indices[lane & (GROUP - 1)] as usize, stack);
-    }
     let last = indices.len() - 1;
-    let mut visitors: [R::Visitor; GROUP] = std::array::from_fn(
+    let visitors: [R::Visitor; GROUP] = std::array::from_fn(
         #[inline(always)]
         |lane| batch.begin(indices[lane.min(last)] as usize),
     );
-    let mut limits: [f32; GROUP] = std::array::from_fn(
-        #[inline(always)]
-        |lane| visitors[lane].t_limit(),
-    );
-    let (mut next, mut active, mut level) = (tree.root, all & plain, 0);
-    let mut waits = 0;
-    loop {
+    let mut group = Group {
+        slabs,
+        limits: std::array::from_fn(
+            #[inline(always)]
+            |lane| visitors[lane].t_limit(),
+        ),
+        visitors,
+    };
+    let (mut next, mut level) = (tree.root, 0);
+    let mut active = ((1_u32 << indices.len()) - 1) & plain;
+    while active != 0 {
         if !next.is_leaf() && active.count_ones() >= FEW && level < MAX_DEPTH {
-            let node = &tree.nodes[next.0 as usize];
-            let limit = L::<'a, R>::from_fn(|lane| limits[lane & (GROUP - 1)]);
-            let lead = active.trailing_zeros() as usize & (GROUP - 1);
-            let first = waits;
-            for (lane, child) in node.children.iter().enumerate() {
-                let (entry, exit) = slabs.clip(&node.boxes, lane, limit);
-                let met = entry.le(exit).bits() & active;
-                let entries = &mut waiting.entries[level][lane].0;
-                entry.write(entries);
-                let item = Item {
-                    child: Child(*child),
-                    met,
-                    key: entries[lead],
-                    slot: (level * 8 + lane) as u32,
-                };
-                if R::Visitor::ORDERED && met != 0 {
-                    // The nearest last, so that it is visited first.
-                    let mut place = waits;
-                    while place > first && waiting.items[place - 1].key < item.key {
-                        waiting.items[place] = waiting.items[place - 1];
-                        place -= 1;
-                    }
-                    waiting.items[place] = item;
-                } else {
-                    waiting.items[waits] = item;
-                }
-                waits += usize::from(met != 0);
-            }
+            waiting.push(&tree.nodes[next.0 as usize], level, active, &group);
         } else {
-            let mut rest = active;
-            while rest != 0 {
-                let lane = rest.trailing_zeros() as usize & (GROUP - 1);
-                rest &= rest - 1;
-                let visitor = &mut visitors[lane];
-                if next.is_leaf() {
-                    for block in next.blocks() {
-                        if visitor.test(block) {
-                            limits[lane] = f32::NEG_INFINITY;
-                            break;
-                        }
-                    }
-                } else {
-                    let mut walk = Walk::<R::Isa>::from(slabs.ray(lane), next);
-                    while walk.step(tree, stack, visitor) {}
-                }
-                limits[lane] = limits[lane].min(visitor.t_limit());
-            }
+            group.apart::<R::Isa>(tree, next, active, stack);
         }
-        // Those who still have something to find there.
-        loop {
-            if waits == 0 {
-                for (lane, index) in indices.iter().enumerate() {
-                    if plain >> lane & 1 == 1 {
-                        batch.finish(*index as usize, &visitors[lane & (GROUP - 1)]);
+        (next, active, level) = waiting.pop(&group);
+    }
+    for (lane, index) in indices.iter().enumerate() {
+        if plain >> lane & 1 == 1 {
+            batch.finish(*index as usize, &group.visitors[lane & (GROUP - 1)]);
+        } else {
+            alone(tree, batch, *index as usize, stack);
+        }
+    }
+}
+
+impl<L: Lane<1>, V: Visitor> Group<L, V> {
+    /// Leads the `active` rays through what lies below `next`, one after another.
+    #[inline(always)]
+    fn apart<I: Isa>(&mut self, tree: &BvhWide, next: Child, active: u32, stack: &mut Stack) {
+        let mut rest = active;
+        while rest != 0 {
+            let lane = rest.trailing_zeros() as usize & (GROUP - 1);
+            rest &= rest - 1;
+            let visitor = &mut self.visitors[lane];
+            if next.is_leaf() {
+                for block in next.blocks() {
+                    if visitor.test(block) {
+                        break;
                     }
                 }
-                return;
+            } else {
+                let mut walk = Walk::<I>::from(self.slabs.ray(lane), next);
+                while walk.step(tree, stack, visitor) {}
             }
-            waits -= 1;
-            let item = waiting.items[waits];
-            let (at, lane) = (item.slot as usize / 8, item.slot as usize % 8);
-            let entries = &waiting.entries[at % MAX_DEPTH][lane].0;
-            let entry = L::<'a, R>::from_fn(|lane| entries[lane & (GROUP - 1)]);
-            let limit = L::<'a, R>::from_fn(|lane| limits[lane & (GROUP - 1)]);
-            active = item.met & entry.le(limit).bits();
+            self.limits[lane] = visitor.t_limit();
+        }
+    }
+}
+
+impl GroupStack {
+    /// Puts the children of a node that the `active` rays meet on top: the nearest last where order counts.
+    #[inline(always)]
+    fn push<L: Lane<1>, V: Visitor>(
+        &mut self,
+        node: &Node,
+        level: usize,
+        active: u32,
+        group: &Group<L, V>,
+    ) {
+        let limits = lanes_of(&group.limits);
+        let lead = active.trailing_zeros() as usize & (GROUP - 1);
+        let first = self.waits;
+        for (lane, child) in node.children.iter().enumerate() {
+            let (entry, exit) = group.slabs.clip(&node.boxes, lane, limits);
+            let met = entry.le(exit).bits() & active;
+            let entries = &mut self.entries[level][lane].0;
+            entry.write(entries);
+            let item = Item {
+                child: Child(*child),
+                met,
+                key: entries[lead],
+                slot: (level * 8 + lane) as u32,
+            };
+            let mut place = self.waits;
+            if V::ORDERED && met != 0 {
+                while place > first && self.items[place - 1].key < item.key {
+                    self.items[place] = self.items[place - 1];
+                    place -= 1;
+                }
+            }
+            self.items[place] = item;
+            self.waits += usize::from(met != 0);
+        }
+    }
+
+    /// The child on top that rays of the group may still find something in, which of them, and its level. None of them: it
+    /// is over.
+    #[inline(always)]
+    fn pop<L: Lane<1>, V: Visitor>(&mut self, group: &Group<L, V>) -> (Child, u32, usize) {
+        let limits = lanes_of::<L>(&group.limits);
+        while self.waits > 0 {
+            self.waits -= 1;
+            let item = self.items[self.waits];
+            let (level, lane) = (item.slot as usize / 8, item.slot as usize % 8);
+            let entries = lanes_of::<L>(&self.entries[level % MAX_DEPTH][lane].0);
+            let active = item.met & entries.le(limits).bits();
             if active != 0 {
-                next = item.child;
-                level = at + 1;
-                break;
+                return (item.child, active, level + 1);
             }
         }
+        (Child::NONE, 0, 0)
     }
 }

@@ -172,23 +172,28 @@ impl<'a, T: Items, K: Kernel, I: Isa, const OCCLUSION: bool> Packet<'a, T, K, I,
             origin: LaneVec3::splat(rays[0].origin),
             dir: bundle.dirs[vector],
         };
-        let none = Vector::new(&packed.kernel, rays, &lanes(0), 0);
-        let mut packet = Self {
+        let lead = Vector::new(&packed.kernel, rays, &lanes(0), 0);
+        let mut limit = lead.farthest;
+        // Those beyond the rays are never looked at.
+        let mut vectors: [Vector<K, I>; VECTORS] = std::array::from_fn(
+            #[inline(always)]
+            |_| lead.clone(),
+        );
+        let count = rays.len().div_ceil(VECTOR);
+        for (vector, of) in vectors.iter_mut().enumerate().take(count).skip(1) {
+            *of = Vector::new(&packed.kernel, rays, &lanes(vector), vector);
+            limit = limit.max(of.farthest);
+        }
+        Self {
             packed,
             rays,
             first,
-            vectors: [none; VECTORS],
-            limit: none.farthest,
+            vectors,
+            limit,
             dirs: bundle.interval,
             work: Work::default(),
             budget,
-        };
-        for vector in 1..packet.vectors() {
-            let of = Vector::new(&packed.kernel, rays, &lanes(vector), vector);
-            packet.limit = packet.limit.max(of.farthest);
-            packet.vectors[vector] = of;
         }
-        packet
     }
 
     /// Which of eight triangles a ray can hit, as a bit a lane.

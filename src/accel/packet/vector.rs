@@ -9,6 +9,7 @@ use super::super::query::{self, Packed};
 use super::{VECTOR, gather};
 
 /// The rays, as the kernel reads them, and what is known of each.
+#[derive(Clone)]
 pub(super) struct Vector<K: Kernel, I: Isa> {
     pub prepared: K::Prepared<1, I::Rays>,
     t_min: I::Rays,
@@ -24,15 +25,6 @@ pub(super) struct Vector<K: Kernel, I: Isa> {
     limit: I::Rays,
     /// The greatest of them.
     pub farthest: f32,
-}
-
-impl<K: Kernel, I: Isa> Copy for Vector<K, I> {}
-
-impl<K: Kernel, I: Isa> Clone for Vector<K, I> {
-    #[inline(always)]
-    fn clone(&self) -> Self {
-        *self
-    }
 }
 
 impl<K: Kernel, I: Isa> Vector<K, I> {

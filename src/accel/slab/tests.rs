@@ -71,9 +71,8 @@ impl Task for InLanes {
         let Self { ray, aabb } = self;
         let scene = Scene::new(aabb);
         let mut boxes: WideCorners = [[[f32::INFINITY; 8], [f32::NEG_INFINITY; 8]]; 3];
-        for axis in 0..3 {
-            boxes[axis][0][3] = aabb.min[axis];
-            boxes[axis][1][3] = aabb.max[axis];
+        for (axis, [least, greatest]) in boxes.iter_mut().enumerate() {
+            (least[3], greatest[3]) = (aabb.min[axis], aabb.max[axis]);
         }
         let wide = WideSlabRay::new::<I::X8>(&ray, &scene);
         let (entry, exit): (I::X8, I::X8) = wide.clip(&boxes, f32::INFINITY);

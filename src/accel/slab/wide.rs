@@ -94,13 +94,13 @@ impl WideSlabRay {
         let (longest, shortest) = (size.max_element(), size.min_element());
         let farthest = ray.origin.abs().max_element();
         let width = CONE * longest;
-        let is_plain = (shortest > 2.0 * width)
-            & (ray.t_min >= 0.0)
-            & (longest < RANGE)
-            & (longest > 1.0 / RANGE)
-            & (farthest < RANGE)
-            & (farthest < LENGTHS * shortest)
-            & (scene.largest < LENGTHS * shortest);
+        let is_plain = shortest > 2.0 * width
+            && ray.t_min >= 0.0
+            && longest < RANGE
+            && longest > 1.0 / RANGE
+            && farthest < RANGE
+            && farthest < LENGTHS * shortest
+            && scene.largest < LENGTHS * shortest;
         let (inverse, offset, t_min) = if is_plain {
             let (movement, square) = (L::load(&MOVE), L::load(&SQUARE));
             let inverse = L::splat(1.0) / twice(ray.dir, ray.t_max);

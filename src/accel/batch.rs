@@ -113,10 +113,10 @@ impl<'a, T: Items, K: Kernel, I: Isa, A: Answer, const OCCLUSION: bool> Rays<'a>
         prefetch(place, size_of::<T::Item<K>>().div_ceil(64));
     }
 
-    const WAYS: bool = K::PACKETS;
+    const WAYS: bool = K::PACKETS && I::SIXTEEN;
 
     // Rays that ask only whether they are blocked rarely start at one point.
-    const PACKETS: bool = K::PACKETS && !OCCLUSION;
+    const PACKETS: bool = Self::WAYS && !OCCLUSION;
     type Packet = Packet<'a, T, K, I, OCCLUSION>;
 
     #[inline(always)]

@@ -6,10 +6,15 @@
 //! ```
 //!
 //! A call costs a few nanoseconds, and the compiler a second less for each kernel; [`Structure::DIRECT`] says what was
-//! chosen for each structure.
+//! chosen for each structure. Traversals that are counted or recorded, and those without vector instructions on a processor
+//! that has them, are not there for their speed and go this way too.
 //!
 //! [`Structure::DIRECT`]: super::Structure::DIRECT
 
+use crate::geometry::Ray;
+use crate::geometry::lanes::Portable;
+
+use super::Structure;
 use super::visit::Visitor;
 
 /// What a visitor does.
@@ -40,13 +45,13 @@ impl<V: Visitor> AnyVisitor for V {
 }
 
 /// A visitor behind a pointer.
-pub(super) struct Behind<'a> {
+pub(super) struct Behind<'a, const ORDERED: bool> {
     visitor: &'a mut dyn AnyVisitor,
     watched: bool,
 }
 
-impl<'a> Behind<'a> {
-    pub fn new<V: Visitor>(visitor: &'a mut V) -> Self {
+impl<'a, const ORDERED: bool> Behind<'a, ORDERED> {
+    fn new<V: Visitor>(visitor: &'a mut V) -> Self {
         Self {
             watched: V::WATCHED,
             visitor,
@@ -54,7 +59,22 @@ impl<'a> Behind<'a> {
     }
 }
 
-impl Visitor for Behind<'_> {
+/// Leads `visitor` through `structure`, behind a pointer.
+pub(super) fn lead<S: Structure + ?Sized, V: Visitor>(
+    structure: &S,
+    ray: &Ray,
+    scratch: &mut S::Scratch,
+    visitor: &mut V,
+) {
+    if V::ORDERED {
+        structure.traverse::<Portable, _>(ray, scratch, &mut Behind::<true>::new(visitor));
+    } else {
+        structure.traverse::<Portable, _>(ray, scratch, &mut Behind::<false>::new(visitor));
+    }
+}
+
+impl<const ORDERED: bool> Visitor for Behind<'_, ORDERED> {
+    const ORDERED: bool = ORDERED;
     // Whoever looks is told; for whoever does not, it is computed in vain.
     const WATCHED: bool = true;
 

@@ -25,6 +25,8 @@ pub(super) const LANES: usize = 8;
 
 /// How a structure's triangles lie in memory.
 pub trait Items: Sized + Send + Sync + 'static {
+    /// Whether an item holds a triangle a lane.
+    const LANES: bool;
     /// What is tested at once.
     type Item<K: Kernel>: Send + Sync;
     /// A ray prepared for the test.
@@ -85,6 +87,7 @@ pub(super) fn fill(slots: &mut Vec<u32>, prims: &[u32]) {
 }
 
 impl Items for Singles {
+    const LANES: bool = false;
     type Item<K: Kernel> = K::Packed<1>;
     type Prepared<K: Kernel, I: Isa> = K::Prepared<1, f32>;
 
@@ -137,6 +140,7 @@ impl Items for Singles {
 }
 
 impl Items for Blocks {
+    const LANES: bool = true;
     type Item<K: Kernel> = Block<K::Packed<LANES>>;
     type Prepared<K: Kernel, I: Isa> = K::Prepared<LANES, I::X8>;
 

@@ -22,7 +22,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::geometry::lanes::{InstructionSet, Isa, Portable};
+use crate::geometry::lanes::{InstructionSet, Isa};
 use crate::geometry::{Aabb, Hit, Ray};
 use crate::kernel;
 use crate::registry::{Choice, ChoiceError, ParamSpec, Params};
@@ -61,7 +61,6 @@ mod visit;
 
 pub use auto::picked;
 pub use batch::Rays;
-use behind::Behind;
 pub use brute::Brute;
 pub use bvh::Bvh;
 pub use items::{Blocks, Items, Singles};
@@ -108,10 +107,10 @@ pub trait Structure: Send + Sync + 'static {
     #[inline(always)]
     fn lead<I: Isa, V: Visitor>(&self, ray: &Ray, scratch: &mut Self::Scratch, visitor: &mut V) {
         // Unit tests take the other way, and are compiled sooner; tests/matrix takes this one.
-        if Self::DIRECT && !cfg!(test) {
+        if Self::DIRECT && (I::SIXTEEN || !Self::Items::LANES) && !cfg!(test) {
             self.traverse::<I, _>(ray, scratch, visitor);
         } else {
-            self.traverse::<Portable, _>(ray, scratch, &mut Behind::new(visitor));
+            behind::lead(self, ray, scratch, visitor);
         }
     }
 

@@ -45,13 +45,7 @@ pub(super) trait Together: Structure {
     ) where
         Self: Sized,
     {
-        R::Isa::enter(Alone {
-            structure: self,
-            batch,
-            scratch,
-            range,
-            lifetime: PhantomData,
-        });
+        alone(self, batch, range, scratch);
     }
 }
 
@@ -74,7 +68,7 @@ pub(super) fn trace<'a, S: Together, R: Rays<'a>>(
     let mut size = VECTOR;
     let mut in_vain = ALONE.start;
     while start < count {
-        let mut alone = start..count;
+        let mut apart = start..count;
         if R::PACKETS && packets {
             let range = start..count.min(start + size);
             let rays = range.len() as u32;
@@ -94,22 +88,33 @@ pub(super) fn trace<'a, S: Together, R: Rays<'a>>(
                 size = VECTOR;
                 continue;
             }
-            alone.end = count.min(start + in_vain);
+            apart.end = count.min(start + in_vain);
             in_vain = ALONE.end.min(2 * in_vain);
         }
-        start = alone.end;
+        start = apart.end;
         if R::PACKETS && packets {
-            structure.apart(batch, alone, scratch);
+            structure.apart(batch, apart, scratch);
         } else {
-            R::Isa::enter(Alone {
-                structure,
-                batch,
-                scratch,
-                range: alone,
-                lifetime: PhantomData,
-            });
+            alone(structure, batch, apart, scratch);
         }
     }
+}
+
+/// Traces the rays in `range` one after another.
+#[inline(always)]
+pub(super) fn alone<'a, S: Structure, R: Rays<'a>>(
+    structure: &S,
+    batch: &mut R,
+    range: Range<usize>,
+    scratch: &mut S::Scratch,
+) {
+    R::Isa::enter(Alone {
+        structure,
+        batch,
+        scratch,
+        range,
+        lifetime: PhantomData,
+    });
 }
 
 /// Rays that go one after another, in a function of their own: within a larger one the compiler keeps less in registers.
@@ -130,7 +135,7 @@ impl<'a, S: Structure, R: Rays<'a>> Task for Alone<'_, 'a, S, R> {
             let mut visitor = self.batch.begin(index);
             let ray = &self.batch.rays()[index];
             self.structure
-                .traverse::<R::Isa, _>(ray, self.scratch, &mut visitor);
+                .lead::<R::Isa, _>(ray, self.scratch, &mut visitor);
             self.batch.finish(index, &visitor);
         }
     }

@@ -8,6 +8,7 @@ use crate::kernel::{self, Kernel, KernelUser};
 use crate::scene::Mesh;
 
 use super::batch::{Answer, Batch};
+use super::behind;
 use super::items::{Items, Singles};
 use super::query::{Packed, Query};
 use super::record::Recorder;
@@ -112,7 +113,7 @@ impl<S: Structure, K: Kernel> Traced<S, K> {
         watch.begin();
         let mut query: Query<S::Items, K, Portable, &mut dyn Watch, OCCLUSION> =
             Query::new(&self.packed, ray, watch);
-        self.structure.lead::<Portable, _>(ray, scratch, &mut query);
+        behind::lead(&self.structure, ray, scratch, &mut query);
         query.best
     }
 

@@ -116,7 +116,7 @@ impl<'a, R: Rays<'a>> Task for Hybrid<'_, 'a, R> {
             let octants = Octants::of(batch.rays(), window, &mut order);
             for octant in octants {
                 for indices in order[octant].chunks(GROUP) {
-                    if !R::Isa::SIXTEEN || indices.len() < FEW as usize {
+                    if indices.len() < FEW as usize {
                         for index in indices {
                             alone(tree, batch, *index as usize, stack);
                         }

@@ -28,6 +28,7 @@ use super::grid::Settings;
 use super::grid::density::ByDensity;
 use super::grid::lattice::Lattice;
 use super::grid::lists::Lists;
+use super::packets;
 use super::share::{Shared, Span};
 use super::traced::finish_in_order;
 use super::{
@@ -225,7 +226,12 @@ impl Structure for GridSkip {
 
     #[inline(always)]
     fn trace<'a, R: Rays<'a>>(&self, batch: &mut R, (): &mut ()) {
-        lanes::trace(self, batch);
+        if R::Isa::SIXTEEN {
+            lanes::trace(self, batch);
+        } else {
+            let all = 0..batch.rays().len();
+            packets::alone(self, batch, all, &mut ());
+        }
     }
 
     fn place_bounds(&self, place: u64) -> Option<Aabb> {

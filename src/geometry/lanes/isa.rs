@@ -43,7 +43,7 @@ pub trait Isa: Copy + Send + Sync + 'static {
     /// A number for each of the sixteen rays of a packet.
     type Rays: Lane<1>;
 
-    /// Whether numbers of sixteen rays are quickly computed with.
+    /// Whether numbers of sixteen rays are quickly computed with, so that packets and groups of them are worth compiling.
     const SIXTEEN: bool = true;
 
     /// Runs `task`, with these lanes, in a function compiled for them: from code that knows the set but is compiled for none.

@@ -13,7 +13,7 @@
 //! **Differs:** pbrt also refuses `t` behind the origin, which is the interval's part here: a ray with a negative `t_min`
 //! sees what lies behind its bracket. A triangle without area is made one point when it is packed.
 
-use crate::geometry::lanes::{Lane, LaneMask, LaneRay};
+use crate::geometry::lanes::{Lane, LaneMask, LaneRay, LaneVec3};
 use crate::geometry::{Ray, Vec3, gamma};
 use crate::registry::Params;
 
@@ -88,6 +88,11 @@ impl Kernel for Pbrt {
     #[inline(always)]
     fn prepare<const W: usize, L: Lane<W>>(&self, lead: &Ray, rays: &LaneRay<L>) -> Prepared<L> {
         shear::prepare(lead, rays)
+    }
+
+    #[inline(always)]
+    fn same_frame<L: Lane<1>>(lead: &Ray, dirs: &LaneVec3<L>) -> bool {
+        shear::same_frame(lead, dirs)
     }
 
     #[inline(always)]

@@ -16,6 +16,8 @@
 //! **Differs** from the libraries' own programs only where their contract is narrower than ours: a ray whose interval
 //! begins before 0 is moved forward first ([`forward`]), since all of them leave negative `t` undefined.
 
+#![doc = include_str!("figures.md")]
+
 mod bvh_crate;
 mod embree;
 mod obvhs;

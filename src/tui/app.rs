@@ -54,6 +54,7 @@ pub(super) fn run(
     plan: &Plan,
     results: PathBuf,
     colors: ColorMode,
+    signals: Signals,
     tty: &mut Tty,
 ) -> Result<(), TuiError> {
     let start = Instant::now();
@@ -61,7 +62,6 @@ pub(super) fn run(
     let mut state = State::new(plan, results, colors, (size.width, size.height));
     // The first frame comes before anything else is begun.
     tty.draw(&state)?;
-    let signals = Signals::register()?;
     let (to, from) = mpsc::channel();
     let steering = Steering::default();
     let mut app = App {

@@ -145,6 +145,14 @@ pub enum TuiError {
 /// There is no terminal, it refuses, or a signal ended the lab.
 pub fn run(options: &Options) -> Result<(), TuiError> {
     let colors = ColorMode::detect(options.colors, true, |name| std::env::var(name).ok());
+    // Before the terminal is claimed: a signal that came in between would end the program with the terminal taken.
+    let signals = signals::Signals::register()?;
     let mut tty = tty::Tty::claim()?;
-    app::run(&options.plan(), options.results.clone(), colors, &mut tty)
+    app::run(
+        &options.plan(),
+        options.results.clone(),
+        colors,
+        signals,
+        &mut tty,
+    )
 }

@@ -259,6 +259,19 @@ fn signals_to_end_restore_the_terminal() {
     }
 }
 
+#[cfg(unix)]
+#[test]
+fn a_signal_before_the_first_frame_restores_the_terminal() {
+    for signal in ["TERM", "HUP", "INT"] {
+        let dir = folder();
+        let mut terminal = lab(dir.path(), 80, 24);
+        terminal.wait_until_claimed();
+        terminal.signal(signal);
+        terminal.wait_for_end();
+        terminal.assert_restored();
+    }
+}
+
 #[test]
 fn a_terminal_that_is_taken_away_ends_the_program() {
     let dir = folder();

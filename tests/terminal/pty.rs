@@ -106,6 +106,19 @@ impl Terminal {
         self.wait_until(&format!("'{text}'"), |screen| screen.contains(text))
     }
 
+    /// Waits until the program has claimed the terminal, whether it has drawn anything or not.
+    pub fn wait_until_claimed(&mut self) {
+        let deadline = Instant::now() + PATIENCE;
+        while !self.parser.screen().alternate_screen() {
+            assert!(
+                Instant::now() < deadline,
+                "the terminal is not claimed; the screen:\n{}",
+                self.screen()
+            );
+            self.take_output(Duration::from_millis(50));
+        }
+    }
+
     /// The screen as text.
     pub fn screen(&mut self) -> String {
         self.take_output(Duration::ZERO);

@@ -5,7 +5,7 @@ use crate::geometry::{Hit, Ray};
 use crate::kernel::Kernel;
 
 use super::items::Items;
-use super::packet::{Bundle, Packet};
+use super::packet::{Bundle, Packet, Vector};
 use super::query::{Packed, Query};
 use super::visit::{Uncounted, Visitor};
 
@@ -42,30 +42,32 @@ pub trait Rays<'a> {
     /// The visitor of the ray with this index, which is handed back by [`Rays::finish`] when the traversal is over.
     fn begin(&self, index: usize) -> Self::Visitor;
 
+    /// As [`Rays::begin`], in the place of the visitor of a ray that is done: what it holds is moved nowhere.
+    fn begin_again(&self, index: usize, visitor: &mut Self::Visitor);
+
     /// Asks the memory for an item that will be tested soon.
     fn prefetch(&self, item: u32);
 
     /// Whether its kernel is worth compiling every way of tracing a batch for: where not, rays go one by one.
     const WAYS: bool;
 
-    /// Whether rays of one origin may go together. Asked before anything that packets need, so that nothing of it is
-    /// compiled where they may not.
-    const PACKETS: bool;
     /// What a traversal of a packet reports to.
-    type Packet: Visitor;
+    type Packet<'p>: Visitor
+    where
+        'a: 'p;
 
     /// The visitor of a packet, the first ray of which has index `first`; handed back by [`Rays::finish_packet`]. `None`
     /// where the kernel wants its rays one by one. It
     /// gives up, and ends the traversal, when its cost exceeds `budget`, about nanoseconds.
-    fn begin_packet(
-        &self,
-        bundle: &Bundle<'a, <Self::Isa as Isa>::Rays>,
+    fn begin_packet<'p>(
+        &mut self,
+        bundle: &'p Bundle<'a, <Self::Isa as Isa>::Rays>,
         first: usize,
         budget: u32,
-    ) -> Option<Self::Packet>;
+    ) -> Option<Self::Packet<'p>>;
 
     /// Takes the answers of a packet and returns what it cost; `None` if it gave up.
-    fn finish_packet(&mut self, packet: &Self::Packet) -> Option<u32>;
+    fn finish_packet(&mut self, packet: Self::Packet<'_>) -> Option<u32>;
 
     /// Takes the answer of a ray.
     fn finish(&mut self, index: usize, visitor: &Self::Visitor);
@@ -76,7 +78,8 @@ pub(super) struct Batch<'a, T: Items, K: Kernel, I: Isa, A, const OCCLUSION: boo
     packed: &'a Packed<T, K>,
     rays: &'a [Ray],
     answers: &'a mut [A],
-    lanes: std::marker::PhantomData<I>,
+    /// Room for the vectors of a packet.
+    vectors: Vec<Vector<K, I>>,
 }
 
 impl<'a, T: Items, K: Kernel, I: Isa, A, const OCCLUSION: bool> Batch<'a, T, K, I, A, OCCLUSION> {
@@ -86,7 +89,7 @@ impl<'a, T: Items, K: Kernel, I: Isa, A, const OCCLUSION: bool> Batch<'a, T, K, 
             packed,
             rays,
             answers,
-            lanes: std::marker::PhantomData,
+            vectors: Vec::new(),
         }
     }
 }
@@ -108,38 +111,45 @@ impl<'a, T: Items, K: Kernel, I: Isa, A: Answer, const OCCLUSION: bool> Rays<'a>
     }
 
     #[inline(always)]
+    fn begin_again(&self, index: usize, visitor: &mut Self::Visitor) {
+        visitor.begin_again(&self.rays[index]);
+    }
+
+    #[inline(always)]
     fn prefetch(&self, item: u32) {
         let place = self.packed.items.as_ptr().wrapping_add(item as usize);
         prefetch(place, size_of::<T::Item<K>>().div_ceil(64));
     }
 
     const WAYS: bool = K::PACKETS && I::SIXTEEN;
-
-    // Rays that ask only whether they are blocked rarely start at one point.
-    const PACKETS: bool = Self::WAYS && !OCCLUSION;
-    type Packet = Packet<'a, T, K, I, OCCLUSION>;
+    type Packet<'p>
+        = Packet<'a, 'p, T, K, I>
+    where
+        'a: 'p;
 
     #[inline(always)]
-    fn begin_packet(
-        &self,
-        bundle: &Bundle<'a, I::Rays>,
+    fn begin_packet<'p>(
+        &mut self,
+        bundle: &'p Bundle<'a, I::Rays>,
         first: usize,
         budget: u32,
-    ) -> Option<Self::Packet> {
+    ) -> Option<Self::Packet<'p>> {
         if bundle.suits::<K>() {
-            Some(Packet::new(self.packed, bundle, first, budget))
+            let room = std::mem::take(&mut self.vectors);
+            Some(Packet::new(self.packed, bundle, first, budget, room))
         } else {
             None
         }
     }
 
     #[inline(always)]
-    fn finish_packet(&mut self, packet: &Self::Packet) -> Option<u32> {
-        if packet.gave_up() {
-            return None;
+    fn finish_packet(&mut self, packet: Self::Packet<'_>) -> Option<u32> {
+        let cost = packet.cost();
+        if cost.is_some() {
+            packet.answer(self.answers);
         }
-        packet.answer(|index, best| self.answers[index] = A::of(best));
-        Some(packet.work.cost())
+        self.vectors = packet.into_room();
+        cost
     }
 
     #[inline(always)]

@@ -50,10 +50,7 @@ pub trait Items: Sized + Send + Sync + 'static {
     ) -> bool;
 
     /// Tests an item against the rays of a packet.
-    fn test_packet<K: Kernel, I: Isa, const OCCLUSION: bool>(
-        packet: &mut Packet<'_, Self, K, I, OCCLUSION>,
-        item: u32,
-    );
+    fn test_packet<K: Kernel, I: Isa>(packet: &mut Packet<'_, '_, Self, K, I>, item: u32);
 
     /// `set` where these items use lanes, else none.
     fn instruction_set(set: InstructionSet) -> InstructionSet;
@@ -121,12 +118,14 @@ impl Items for Singles {
     }
 
     #[inline(always)]
-    fn test_packet<K: Kernel, I: Isa, const OCCLUSION: bool>(
-        packet: &mut Packet<'_, Self, K, I, OCCLUSION>,
-        prim: u32,
-    ) {
+    fn test_packet<K: Kernel, I: Isa>(packet: &mut Packet<'_, '_, Self, K, I>, prim: u32) {
         let packed = packet.packed;
-        packet.test_triangle(prim, &packed.items[prim as usize]);
+        packet.test_triangles(
+            1,
+            |_, _| true,
+            #[inline(always)]
+            |_| (prim, packed.items[prim as usize].clone()),
+        );
     }
 
     fn instruction_set(_: InstructionSet) -> InstructionSet {
@@ -214,24 +213,29 @@ impl Items for Blocks {
     }
 
     #[inline(always)]
-    fn test_packet<K: Kernel, I: Isa, const OCCLUSION: bool>(
-        packet: &mut Packet<'_, Self, K, I, OCCLUSION>,
-        item: u32,
-    ) {
+    fn test_packet<K: Kernel, I: Isa>(packet: &mut Packet<'_, '_, Self, K, I>, item: u32) {
         let packed = packet.packed;
         let block = &packed.items[item as usize];
-        let mut met = packet.can_hit(K::corners(&block.triangles));
-        let mut last = None;
-        while met != 0 {
-            let lane = met.trailing_zeros() as usize & (LANES - 1);
-            met &= met - 1;
-            let prim = block.prims[lane];
-            // The lanes that are left over repeat the last triangle.
-            if last != Some(prim) {
-                packet.test_triangle(prim, &K::lane(&block.triangles, lane));
-            }
-            last = Some(prim);
+        let seen = packet.see(K::corners(&block.triangles));
+        if seen.met == 0 {
+            return;
         }
+        // The lanes that are left over repeat the last triangle.
+        let mut met = 0;
+        for lane in 0..LANES {
+            let is_repeated = lane > 0 && block.prims[lane - 1] == block.prims[lane];
+            met |= u32::from(!is_repeated) << lane;
+        }
+        packet.test_triangles(
+            met & seen.met,
+            #[inline(always)]
+            |lane, dirs| seen.can_be_hit(lane, dirs),
+            #[inline(always)]
+            |lane| {
+                let prim = block.prims[lane & (LANES - 1)];
+                (prim, K::lane(&block.triangles, lane))
+            },
+        );
     }
 
     fn instruction_set(set: InstructionSet) -> InstructionSet {

@@ -8,16 +8,16 @@ use std::marker::PhantomData;
 use std::ops::Range;
 
 use crate::geometry::Ray;
-use crate::geometry::lanes::{Isa, Task};
+use crate::geometry::lanes::{Isa, Task, prefetch};
 
 use super::packet::{MOST, VECTOR};
-use super::{Rays, Structure};
+use super::{Rays, Structure, Visitor};
 
 /// Cost of a ray in a packet of 64, about in nanoseconds, above which packets of 16 are better.
 const TOO_WIDE: u32 = 20;
 
 /// Cost of a ray in a packet above which it had better go alone: half of what that costs.
-pub(super) const TOO_DEAR: u32 = 40;
+pub(super) const TOO_DEAR: u32 = 1000;
 
 /// Cost of a ray in a packet of 16 below which 64 may go together.
 const CHEAP: u32 = 15;
@@ -25,15 +25,27 @@ const CHEAP: u32 = 15;
 /// Rays that go alone until a packet is tried again: at first, and most, where it was tried in vain again and again.
 const ALONE: Range<usize> = 256..8192;
 
+/// Why rays are no packet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Refused {
+    /// Their origins or signs differ, or numbers are at the ends of their range: others may be one.
+    Unlike,
+    /// They were, and it cost too much: so it will for their neighbours.
+    TooDear,
+}
+
 /// A structure that packets can go through.
 pub(super) trait Together: Structure {
-    /// Traces the rays in `range` as a packet and returns what it cost; `None` if they cannot be one, or had better not.
+    /// Traces the rays in `range` as a packet and returns what it cost.
+    ///
+    /// # Errors
+    /// They cannot be one, or had better not.
     fn together<'a, R: Rays<'a>>(
         &self,
         batch: &mut R,
         range: Range<usize>,
         scratch: &mut Self::Scratch,
-    ) -> Option<u32>;
+    ) -> Result<u32, Refused>;
 
     /// Traces the rays in `range` without making a packet of them: one after another.
     #[inline(always)]
@@ -64,15 +76,21 @@ pub(super) fn trace<'a, S: Together, R: Rays<'a>>(
     packets: bool,
 ) {
     let count = batch.rays().len();
+    // Rays that ask only whether they are blocked rarely start at one point.
+    if !(R::WAYS && R::Visitor::ORDERED && packets) {
+        return alone(structure, batch, 0..count, scratch);
+    }
     let mut start = 0;
     let mut size = VECTOR;
     let mut in_vain = ALONE.start;
     while start < count {
-        let mut apart = start..count;
-        if R::PACKETS && packets {
-            let range = start..count.min(start + size);
-            let rays = range.len() as u32;
-            if let Some(cost) = structure.together(batch, range.clone(), scratch) {
+        let range = start..count.min(start + size);
+        let rays = range.len() as u32;
+        // The next packet's; the memory has time while this one is traced.
+        let next = batch.rays().as_ptr().wrapping_add(range.end);
+        prefetch(next, size * size_of::<Ray>() / 64);
+        match structure.together(batch, range.clone(), scratch) {
+            Ok(cost) => {
                 start = range.end;
                 in_vain = ALONE.start;
                 if cost > TOO_WIDE * rays {
@@ -81,21 +99,19 @@ pub(super) fn trace<'a, S: Together, R: Rays<'a>>(
                     // Whole squares only.
                     size = MOST;
                 }
-                continue;
             }
-            if size > VECTOR {
-                // Quarters may be of one mind.
-                size = VECTOR;
-                continue;
+            // Quarters may be of one mind.
+            Err(_) if size > VECTOR => size = VECTOR,
+            Err(Refused::Unlike) => {
+                start = range.end;
+                structure.apart(batch, range, scratch);
             }
-            apart.end = count.min(start + in_vain);
-            in_vain = ALONE.end.min(2 * in_vain);
-        }
-        start = apart.end;
-        if R::PACKETS && packets {
-            structure.apart(batch, apart, scratch);
-        } else {
-            alone(structure, batch, apart, scratch);
+            Err(Refused::TooDear) => {
+                let apart = start..count.min(start + in_vain);
+                in_vain = ALONE.end.min(2 * in_vain);
+                start = apart.end;
+                structure.apart(batch, apart, scratch);
+            }
         }
     }
 }

@@ -45,6 +45,16 @@ impl<'a, T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool>
         }
     }
 
+    /// Forgets its ray and begins another.
+    #[inline(always)]
+    pub fn begin_again(&mut self, ray: &'a Ray) {
+        self.prepared = None;
+        self.ray = ray;
+        self.best = Hit::MISS;
+        self.limit = ray.t_max;
+        self.counts = [f32::NEG_INFINITY, f32::INFINITY];
+    }
+
     /// The ray in the kernel's form.
     #[inline(always)]
     pub fn prepared(&mut self) -> T::Prepared<K, I> {

@@ -18,12 +18,14 @@ mod avx512;
 mod isa;
 mod pair;
 mod portable;
+mod rows;
 #[cfg(test)]
 mod tests;
 
 pub use isa::{InstructionSet, Isa, Portable, Task, prefetch};
 pub use pair::Pair;
 pub use portable::{F32x8, Mask8};
+pub use rows::{HitLanes, RayLanes, SIXTEEN};
 
 /// The truth values of `W` comparisons.
 pub trait LaneMask:
@@ -101,6 +103,12 @@ pub trait Lane<const W: usize>:
     fn mul_sub_freely(self, factor: Self, term: Self) -> Self {
         self * factor - term
     }
+    /// `self·factor + term`, likewise.
+    #[must_use]
+    #[inline(always)]
+    fn mul_add_freely(self, factor: Self, term: Self) -> Self {
+        self * factor + term
+    }
     /// Absolute value.
     #[must_use]
     fn abs(self) -> Self;
@@ -115,6 +123,8 @@ pub trait Lane<const W: usize>:
     fn le(self, other: Self) -> Self::Mask;
     /// `self == other`, false where either is NaN.
     fn eq(self, other: Self) -> Self::Mask;
+    /// Whether the bits are the same: zeros of either sign differ, a NaN is the same as itself.
+    fn same_bits(self, other: Self) -> Self::Mask;
 
     /// `self > other`, false where either is NaN.
     #[inline(always)]
@@ -191,6 +201,10 @@ impl Lane<1> for f32 {
     #[inline(always)]
     fn eq(self, other: Self) -> bool {
         self == other
+    }
+    #[inline(always)]
+    fn same_bits(self, other: Self) -> bool {
+        self.to_bits() == other.to_bits()
     }
 }
 

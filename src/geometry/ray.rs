@@ -51,6 +51,7 @@ impl Ray {
 
 /// What a closest-hit query found: a triangle and where, or [`Hit::MISS`].
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(C)]
 pub struct Hit {
     /// Ray parameter of the hit; infinite for a miss.
     pub t: f32,

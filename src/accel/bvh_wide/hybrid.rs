@@ -16,9 +16,9 @@ use std::marker::PhantomData;
 use std::ops::Range;
 
 use crate::geometry::Ray;
-use crate::geometry::lanes::{Isa, Lane, LaneMask, LaneRay, LaneVec3, Task};
+use crate::geometry::lanes::{Isa, Lane, LaneMask, RayLanes, SIXTEEN, Task};
 
-use super::super::slab::SlabRays;
+use super::super::slab::{SlabRays, WideSlabRay};
 use super::super::stack::MAX_DEPTH;
 use super::super::{Rays, Visitor};
 use super::stack::{Stack, Stacks};
@@ -26,7 +26,7 @@ use super::walk::Walk;
 use super::{BvhWide, Child, Node};
 
 /// Rays of a group.
-const GROUP: usize = 16;
+const GROUP: usize = SIXTEEN;
 
 /// Rays that are looked at together to make groups.
 const WINDOW: usize = 128;
@@ -108,6 +108,10 @@ impl<'a, R: Rays<'a>> Task for Hybrid<'_, 'a, R> {
     fn run<I: Isa>(self) {
         let (tree, batch) = (self.tree, self.batch);
         let (stack, waiting) = self.stacks.with_group();
+        let mut visitors = Vec::with_capacity(GROUP);
+        while visitors.len() < GROUP {
+            visitors.push(batch.begin(self.range.start));
+        }
         let mut start = self.range.start;
         while start < self.range.end {
             let mut order = [0_u32; WINDOW];
@@ -116,13 +120,7 @@ impl<'a, R: Rays<'a>> Task for Hybrid<'_, 'a, R> {
             let octants = Octants::of(batch.rays(), window, &mut order);
             for octant in octants {
                 for indices in order[octant].chunks(GROUP) {
-                    if indices.len() < FEW as usize {
-                        for index in indices {
-                            alone(tree, batch, *index as usize, stack);
-                        }
-                    } else {
-                        together(tree, batch, indices, stack, waiting);
-                    }
+                    together(tree, batch, indices, &mut visitors, (stack, waiting));
                 }
             }
         }
@@ -187,26 +185,13 @@ impl Iterator for Octants {
     }
 }
 
-/// Traces one ray.
-#[inline(always)]
-fn alone<'a, R: Rays<'a>>(tree: &BvhWide, batch: &mut R, index: usize, stack: &mut Stack) {
-    let mut visitor = batch.begin(index);
-    let mut walk = Walk::<R::Isa>::new(tree, &batch.rays()[index]);
-    while walk.step(tree, stack, &mut visitor) {}
-    batch.finish(index, &visitor);
-}
-
-/// A component of the rays with these indices; lanes that are left repeat the last.
-#[inline(always)]
-fn gather<L: Lane<1>>(rays: &[Ray], indices: &[u32], part: impl Fn(&Ray) -> f32) -> L {
-    let last = indices.len() - 1;
-    L::from_fn(|lane| part(&rays[indices[lane.min(last)] as usize]))
-}
-
 /// Rays of a group under way.
-struct Group<L, V> {
+struct Group<'v, L, V> {
     slabs: SlabRays<L>,
-    visitors: [V; GROUP],
+    /// Which of them `slabs` holds for.
+    plain: u32,
+    /// As many as a group has rays at most.
+    visitors: &'v mut [V],
     /// What begins beyond these changes nothing.
     limits: [f32; GROUP],
 }
@@ -217,89 +202,93 @@ fn lanes_of<L: Lane<1>>(row: &[f32; GROUP]) -> L {
     L::from_fn(|lane| row[lane & (GROUP - 1)])
 }
 
-/// The rays with these indices, a lane each, and their least `t`.
-#[inline(always)]
-fn gathered<L: Lane<1>>(rays: &[Ray], indices: &[u32]) -> (LaneRay<L>, L) {
-    let origin = LaneVec3 {
-        x: gather(rays, indices, |ray| ray.origin.x),
-        y: gather(rays, indices, |ray| ray.origin.y),
-        z: gather(rays, indices, |ray| ray.origin.z),
-    };
-    let dir = LaneVec3 {
-        x: gather(rays, indices, |ray| ray.dir.x),
-        y: gather(rays, indices, |ray| ray.dir.y),
-        z: gather(rays, indices, |ray| ray.dir.z),
-    };
-    let t_min = gather(rays, indices, |ray| ray.t_min);
-    (LaneRay { origin, dir }, t_min)
-}
-
 /// Traces the rays of a group, all from one octant.
 #[inline(always)]
 fn together<'a, R: Rays<'a>>(
     tree: &BvhWide,
     batch: &mut R,
     indices: &[u32],
-    stack: &mut Stack,
-    waiting: &mut GroupStack,
+    visitors: &mut [R::Visitor],
+    (stack, waiting): (&mut Stack, &mut GroupStack),
 ) {
     let rays = batch.rays();
-    let (lanes, t_min) = gathered::<<R::Isa as Isa>::Rays>(rays, indices);
-    let lead = octant(&rays[indices[0] as usize]);
-    let near = [lead & 1, lead >> 1 & 1, lead >> 2 & 1];
-    let (slabs, plain) = SlabRays::new(&lanes, t_min, near, &tree.scene);
     let last = indices.len() - 1;
-    let visitors: [R::Visitor; GROUP] = std::array::from_fn(
-        #[inline(always)]
-        |lane| batch.begin(indices[lane.min(last)] as usize),
-    );
+    let ray = |lane: usize| &rays[indices[lane.min(last)] as usize];
+    let lanes = RayLanes::of::<R::Isa>(indices.len(), ray);
+    let lead = octant(ray(0));
+    let near = [lead & 1, lead >> 1 & 1, lead >> 2 & 1];
+    let (slabs, plain) = SlabRays::new(&lanes, near, &tree.scene);
+    for (visitor, index) in visitors.iter_mut().zip(indices) {
+        batch.begin_again(*index as usize, visitor);
+    }
+    let mut limits = [0.0; GROUP];
+    lanes.t_max.write(&mut limits);
     let mut group = Group {
         slabs,
-        limits: std::array::from_fn(
-            #[inline(always)]
-            |lane| visitors[lane].t_limit(),
-        ),
+        plain,
         visitors,
+        limits,
     };
-    let (mut next, mut level) = (tree.root, 0);
-    let mut active = ((1_u32 << indices.len()) - 1) & plain;
-    while active != 0 {
-        if !next.is_leaf() && active.count_ones() >= FEW && level < MAX_DEPTH {
-            waiting.push(&tree.nodes[next.0 as usize], level, active, &group);
+    let all = (1_u32 << indices.len()) - 1;
+    let (mut next, mut level, mut together) = (tree.root, 0, all & plain);
+    let mut apart = all & !plain;
+    // Those that are not plain go first, and once.
+    while together | apart != 0 {
+        if apart == 0 && !next.is_leaf() && together.count_ones() >= FEW && level < MAX_DEPTH {
+            waiting.push(&tree.nodes[next.0 as usize], level, together, &group);
         } else {
-            group.apart::<R::Isa>(tree, next, active, stack);
+            let active = if apart == 0 { together } else { apart };
+            R::Isa::enter(Apart {
+                tree,
+                group: &mut group,
+                next,
+                active,
+                ray,
+                stack,
+            });
+            if std::mem::take(&mut apart) != 0 {
+                continue;
+            }
         }
-        (next, active, level) = waiting.pop(&group);
+        (next, together, level) = waiting.pop(&group);
     }
     for (lane, index) in indices.iter().enumerate() {
-        if plain >> lane & 1 == 1 {
-            batch.finish(*index as usize, &group.visitors[lane & (GROUP - 1)]);
-        } else {
-            alone(tree, batch, *index as usize, stack);
-        }
+        batch.finish(*index as usize, &group.visitors[lane & (GROUP - 1)]);
     }
 }
 
-impl<L: Lane<1>, V: Visitor> Group<L, V> {
-    /// Leads the `active` rays through what lies below `next`, one after another.
+/// Leads the `active` rays of a group through what lies below `next`, one after another.
+struct Apart<'t, 'v, L, V, F> {
+    tree: &'t BvhWide,
+    group: &'t mut Group<'v, L, V>,
+    next: Child,
+    active: u32,
+    /// The ray in a lane.
+    ray: F,
+    stack: &'t mut Stack,
+}
+
+impl<'r, L: Lane<1>, V: Visitor, F: Fn(usize) -> &'r Ray> Task for Apart<'_, '_, L, V, F> {
+    type Out = ();
+
     #[inline(always)]
-    fn apart<I: Isa>(&mut self, tree: &BvhWide, next: Child, active: u32, stack: &mut Stack) {
-        let mut rest = active;
+    fn run<I: Isa>(self) {
+        let Self { tree, group, .. } = self;
+        let mut rest = self.active;
         while rest != 0 {
             let lane = rest.trailing_zeros() as usize & (GROUP - 1);
             rest &= rest - 1;
-            let visitor = &mut self.visitors[lane];
-            if next.is_leaf() {
-                for block in next.blocks() {
-                    if visitor.test(block) {
-                        break;
-                    }
-                }
+            let slabs = if self.next.is_leaf() {
+                WideSlabRay::NONE
+            } else if group.plain >> lane & 1 == 1 {
+                group.slabs.ray(lane)
             } else {
-                let mut walk = Walk::<I>::from(self.slabs.ray(lane), next);
-                while walk.step(tree, stack, visitor) {}
-            }
-            self.limits[lane] = visitor.t_limit();
+                WideSlabRay::new::<I::X8>((self.ray)(lane), &tree.scene)
+            };
+            let visitor = &mut group.visitors[lane];
+            let mut walk = Walk::<I>::from(slabs, self.next);
+            while walk.step(tree, self.stack, visitor) {}
+            group.limits[lane] = visitor.t_limit();
         }
     }
 }

@@ -25,23 +25,6 @@ struct Flight<I: Isa, V> {
     visitor: V,
 }
 
-impl<I: Isa, V> Flight<I, V> {
-    #[inline(always)]
-    fn new<'a, R: Rays<'a, Isa = I, Visitor = V>>(
-        tree: &BvhWide,
-        batch: &R,
-        index: usize,
-        stack: usize,
-    ) -> Self {
-        Self {
-            index,
-            stack,
-            walk: Walk::new(tree, &batch.rays()[index]),
-            visitor: batch.begin(index),
-        }
-    }
-}
-
 /// Traces all rays of `batch`.
 #[inline(always)]
 pub(super) fn trace<'a, R: Rays<'a>>(tree: &BvhWide, batch: &mut R, stacks: &mut Stacks) {
@@ -50,7 +33,12 @@ pub(super) fn trace<'a, R: Rays<'a>>(tree: &BvhWide, batch: &mut R, stacks: &mut
     let mut waiting = FLIGHTS.min(count)..count;
     let mut flights = Vec::with_capacity(FLIGHTS);
     for index in 0..waiting.start {
-        flights.push(Flight::new(tree, batch, index, index));
+        flights.push(Flight {
+            index,
+            stack: index,
+            walk: Walk::<R::Isa>::new(tree, &batch.rays()[index]),
+            visitor: batch.begin(index),
+        });
     }
     let mut turn = 0;
     while let Some(flight) = flights.get_mut(turn) {
@@ -64,7 +52,9 @@ pub(super) fn trace<'a, R: Rays<'a>>(tree: &BvhWide, batch: &mut R, stacks: &mut
         } else {
             batch.finish(flight.index, &flight.visitor);
             if let Some(index) = waiting.next() {
-                *flight = Flight::new(tree, batch, index, flight.stack);
+                flight.index = index;
+                flight.walk = Walk::new(tree, &batch.rays()[index]);
+                batch.begin_again(index, &mut flight.visitor);
             } else {
                 flights.swap_remove(turn);
             }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::super::Rays;
 use super::super::packet::Bundle;
-use super::super::packets::{TOO_DEAR, Together};
+use super::super::packets::{Refused, TOO_DEAR, Together};
 use super::super::slab::PacketSlabs;
 use super::BvhWide;
 use super::hybrid;
@@ -19,18 +19,21 @@ impl Together for BvhWide {
         batch: &mut R,
         range: Range<usize>,
         stacks: &mut Stacks,
-    ) -> Option<u32> {
+    ) -> Result<u32, Refused> {
         let (first, rays) = (range.start, &batch.rays()[range]);
         let budget = TOO_DEAR * rays.len() as u32;
         let [stack] = stacks.first(1) else {
-            return None;
+            return Err(Refused::Unlike);
         };
-        let bundle = Bundle::new(rays)?;
-        let slabs = PacketSlabs::<<R::Isa as Isa>::X8>::new(&bundle, &self.scene.bounds)?;
-        let mut packet = batch.begin_packet(&bundle, first, budget)?;
+        let bundle = Bundle::new::<R::Isa>(rays);
+        let slabs = PacketSlabs::<<R::Isa as Isa>::X8>::new(&bundle, &self.scene.bounds)
+            .ok_or(Refused::Unlike)?;
+        let mut packet = batch
+            .begin_packet(&bundle, first, budget)
+            .ok_or(Refused::Unlike)?;
         let mut walk = Walk::<R::Isa, _>::along(slabs, self, 0.0);
         while walk.step(self, stack, &mut packet) {}
-        batch.finish_packet(&packet)
+        batch.finish_packet(packet).ok_or(Refused::TooDear)
     }
 
     /// Neighbours have much of their way in common, even where they are no packet.

@@ -116,7 +116,7 @@ fn board<'a, R: Rays<'a>>(
 ) -> bool {
     for index in waiting {
         let entered = ways.put(lane, &grid.lattice, &batch.rays()[index]);
-        flight.visitor = batch.begin(index);
+        batch.begin_again(index, &mut flight.visitor);
         if let Some((frame, octant)) = entered {
             flight.index = index;
             flight.frame = frame;

@@ -1,29 +1,91 @@
-//! Which triangles of a block no ray of a packet can hit, found for all eight at once.
+//! Which triangles of a block a packet may hit: first all eight at once for all of its rays, then one for sixteen rays.
+//!
+//! ```text
+//!          b              seen from the origin each edge is a plane through it; a ray hits only if it runs on the same
+//!         / \             side of all three. The planes' normals a x b, b x c, c x a serve every ray of the packet:
+//!        / . \            the interval of directions first, then sixteen directions by three dot products.
+//!       a --- c
+//! ```
+//!
+//! Both keep what is missed by no more than what a kernel's rounding could make of it.
 
 use crate::geometry::Vec3;
 use crate::geometry::lanes::{Lane, LaneMask, LaneVec3};
 
-/// Which of eight triangles, given by corners relative to the origin, a ray with a direction between `dirs` can hit, as a
-/// bit a lane. Keeps those that it misses by no more than roundings.
-#[inline(always)]
-pub(in super::super) fn can_hit<L: Lane<8>>(corners: &[LaneVec3<L>; 3], dirs: &[Vec3; 2]) -> u32 {
-    let [a, b, c] = corners;
-    let far = largest(a).max(largest(b)).max(largest(c));
-    let fast = dirs[0].abs().max(dirs[1].abs()).max_element();
-    // A kernel's edge functions are off by less than 20 roundings of products of two distances and a direction's
-    // component, these here by less than 10 more, of each of three components.
-    // The last term is what underflow can lose, of coordinates and of directions.
-    let slack =
-        far * far * L::splat(fast * 96.0 * 0.5 * f32::EPSILON) + L::splat(fast * 1e-43 + 1e-43);
-    let [ab, bc, ca] = [
-        reach::<L>(a.cross(*b), dirs),
-        reach::<L>(b.cross(*c), dirs),
-        reach::<L>(c.cross(*a), dirs),
-    ];
-    // Written so that NaN keeps a triangle.
-    let below = ab[1].lt(-slack) | bc[1].lt(-slack) | ca[1].lt(-slack);
-    let above = ab[0].gt(slack) | bc[0].gt(slack) | ca[0].gt(slack);
-    !(below & above).bits() & 0xff
+/// Products of three coordinates beyond this could overflow on their way; then nothing is left out.
+const RANGE: f32 = 1e36;
+
+/// Eight triangles as seen from the origin of a packet.
+pub(in super::super) struct Seen {
+    /// Which of them a ray of the packet can hit, a bit each.
+    pub met: u32,
+    /// Normals of the planes through the origin and an edge: for each edge and axis eight numbers.
+    normals: [[[f32; 8]; 3]; 3],
+    /// How far a ray may be on the wrong side.
+    slack: [f32; 8],
+}
+
+impl Seen {
+    /// The triangles with these corners relative to the origin, for rays with directions between `dirs`.
+    #[inline(always)]
+    pub fn new<L: Lane<8>>([a, b, c]: &[LaneVec3<L>; 3], dirs: &[Vec3; 2]) -> Self {
+        let far = largest(a).max(largest(b)).max(largest(c));
+        let fast = dirs[0].abs().max(dirs[1].abs()).max_element();
+        // A kernel's edge functions are off by less than 20 roundings of products of two distances and a direction's
+        // component, these here by less than 10 more, of each of three components.
+        // The last term is more than underflow can take, of coordinates and of directions; a normal number, since others are
+        // added a hundred times slower.
+        let slack = far * far * L::splat(fast * 96.0 * 0.5 * f32::EPSILON)
+            + L::splat((fast + 1.0) * f32::MIN_POSITIVE);
+        let in_range = (far * far * L::splat(fast)).lt(L::splat(RANGE));
+        let slack = L::select(in_range, slack, L::splat(f32::INFINITY));
+        let normals = [a.cross(*b), b.cross(*c), c.cross(*a)];
+        let [ab, bc, ca] = [
+            reach::<L>(&normals[0], dirs),
+            reach::<L>(&normals[1], dirs),
+            reach::<L>(&normals[2], dirs),
+        ];
+        // Written so that NaN keeps a triangle.
+        let below = ab[1].lt(-slack) | bc[1].lt(-slack) | ca[1].lt(-slack);
+        let above = ab[0].gt(slack) | bc[0].gt(slack) | ca[0].gt(slack);
+        let mut seen = Self {
+            met: !(below & above).bits() & 0xff,
+            normals: [[[0.0; 8]; 3]; 3],
+            slack: [0.0; 8],
+        };
+        if seen.met != 0 {
+            for (rows, normal) in seen.normals.iter_mut().zip(&normals) {
+                normal.x.write(&mut rows[0]);
+                normal.y.write(&mut rows[1]);
+                normal.z.write(&mut rows[2]);
+            }
+            slack.write(&mut seen.slack);
+        }
+        seen
+    }
+
+    /// Whether one of the rays with these directions can hit the triangle in `lane`.
+    #[inline(always)]
+    pub fn can_be_hit<L: Lane<1>>(&self, lane: usize, dirs: &LaneVec3<L>) -> bool {
+        let slack = self.slack[lane & 7];
+        let [ab, bc, ca] = [
+            self.side(0, lane, dirs),
+            self.side(1, lane, dirs),
+            self.side(2, lane, dirs),
+        ];
+        let apart =
+            ab.min(bc).min(ca).lt(L::splat(-slack)) & ab.max(bc).max(ca).gt(L::splat(slack));
+        (!apart).bits() & 0xffff != 0
+    }
+
+    /// On which side of an edge's plane the rays run, and how far. In the range in which it is asked for nothing overflows.
+    #[inline(always)]
+    fn side<L: Lane<1>>(&self, edge: usize, lane: usize, dirs: &LaneVec3<L>) -> L {
+        let [x, y, z] = &self.normals[edge];
+        let [x, y, z] = [x[lane & 7], y[lane & 7], z[lane & 7]];
+        let yz = dirs.y.mul_add_freely(L::splat(y), dirs.z * L::splat(z));
+        dirs.x.mul_add_freely(L::splat(x), yz)
+    }
 }
 
 /// Largest component.
@@ -34,7 +96,7 @@ fn largest<L: Lane<8>>(v: &LaneVec3<L>) -> L {
 
 /// Least and greatest dot product of `normal` with a direction between `dirs`.
 #[inline(always)]
-fn reach<L: Lane<8>>(normal: LaneVec3<L>, dirs: &[Vec3; 2]) -> [L; 2] {
+fn reach<L: Lane<8>>(normal: &LaneVec3<L>, dirs: &[Vec3; 2]) -> [L; 2] {
     let (x0, x1) = (
         normal.x * L::splat(dirs[0].x),
         normal.x * L::splat(dirs[1].x),

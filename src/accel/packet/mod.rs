@@ -10,10 +10,11 @@
 //! Hierarchies", 2007, for packets with interval arithmetic. **Differs:** the cull of triangles keeps what a kernel's
 //! rounding could accept, so a watertight kernel stays so.
 
-use crate::geometry::lanes::{Isa, Lane, LaneRay, LaneVec3};
+use crate::geometry::lanes::{Isa, Lane, LaneMask, LaneVec3, RayLanes, SIXTEEN};
 use crate::geometry::{Hit, Ray, Vec3};
 use crate::kernel::Kernel;
 
+use super::batch::Answer;
 use super::items::Items;
 use super::query::Packed;
 use super::visit::Visitor;
@@ -21,30 +22,31 @@ use super::visit::Visitor;
 mod cull;
 mod vector;
 
-use vector::Vector;
+use cull::Seen;
+
+pub(super) use vector::Vector;
 
 /// Most rays of a packet.
 pub const MOST: usize = 64;
 
 /// Rays of a vector.
-pub(super) const VECTOR: usize = 16;
+pub(super) const VECTOR: usize = SIXTEEN;
 
 /// Vectors of a packet.
 const VECTORS: usize = MOST / VECTOR;
 
 /// Rays that share their origin and visit the same places.
-pub struct Packet<'a, T: Items, K: Kernel, I: Isa, const OCCLUSION: bool> {
+pub struct Packet<'a, 'p, T: Items, K: Kernel, I: Isa> {
     pub packed: &'a Packed<T, K>,
-    rays: &'a [Ray],
+    bundle: &'p Bundle<'a, I::Rays>,
     /// Index of the first ray in its batch.
-    pub first: usize,
-    vectors: [Vector<K, I>; VECTORS],
+    first: usize,
+    /// Made when the first triangle is tested: many packets meet none.
+    vectors: Vec<Vector<K, I>>,
     /// Greatest of the vectors' limits.
     limit: f32,
-    /// Least and greatest components of the directions.
-    dirs: [Vec3; 2],
     /// What it did.
-    pub work: Work,
+    work: Work,
     /// The cost beyond which it gives up.
     budget: u32,
 }
@@ -70,71 +72,68 @@ impl Work {
 pub struct Bundle<'a, L> {
     /// From one to [`MOST`] of them.
     pub rays: &'a [Ray],
-    /// Their directions, a vector each sixteen; lanes that are left repeat the last ray.
-    dirs: [LaneVec3<L>; VECTORS],
+    /// A vector each sixteen. Lanes that are left repeat the last ray, with a `t_max` of negative infinity.
+    lanes: [RayLanes<L>; VECTORS],
     /// Least and greatest components of the directions.
     pub interval: [Vec3; 2],
     /// Least and greatest of the largest components.
     pub longest: [f32; 2],
+    /// Least of the rays.
+    pub t_min: f32,
+    /// Greatest of the rays.
+    t_max: f32,
+    /// Whether all origins are the same, bit for bit. Where not, nothing else holds.
+    pub share_origin: bool,
 }
 
-/// A component of the directions of a vector.
+/// The rays of a vector: sixteen, or those that are left.
 #[inline(always)]
-fn gather<L: Lane<1>>(rays: &[Ray], vector: usize, part: impl Fn(&Ray) -> f32) -> L {
-    let first = vector * VECTOR;
-    if let Some(whole) = rays.get(first..first + VECTOR) {
-        L::from_fn(|lane| part(&whole[lane & (VECTOR - 1)]))
-    } else {
-        L::from_fn(|lane| part(&rays[(first + lane).min(rays.len() - 1)]))
+fn lanes<I: Isa>(rays: &[Ray], vector: usize) -> RayLanes<I::Rays> {
+    let rest = &rays[vector * VECTOR..];
+    if let Some(whole) = rest.first_chunk() {
+        return I::rays(whole);
+    }
+    let lanes = RayLanes::of::<I>(rest.len(), |lane| &rest[lane]);
+    RayLanes {
+        t_max: I::Rays::from_fn(|lane| {
+            if lane < rest.len() {
+                lanes.t_max.get(lane)
+            } else {
+                f32::NEG_INFINITY
+            }
+        }),
+        ..lanes
     }
 }
 
 impl<'a, L: Lane<1>> Bundle<'a, L> {
-    /// `None` where the origins differ, or there are no rays or too many.
+    /// Of from one to [`MOST`] rays.
     #[inline(always)]
-    pub fn new(rays: &'a [Ray]) -> Option<Self> {
-        let lead = rays.first()?;
-        let [x, y, z] = lead.origin.to_array().map(f32::to_bits);
-        let mut differing = 0;
-        for ray in rays {
-            differing |= ray.origin.x.to_bits() ^ x;
-            differing |= ray.origin.y.to_bits() ^ y;
-            differing |= ray.origin.z.to_bits() ^ z;
+    pub fn new<I: Isa<Rays = L>>(rays: &'a [Ray]) -> Self {
+        let of = lanes::<I>;
+        let last = (rays.len() - 1) / VECTOR;
+        let first = of(rays, 0);
+        let all = if last == 0 {
+            [first; VECTORS]
+        } else {
+            [first, of(rays, 1), of(rays, last.min(2)), of(rays, last)]
+        };
+        let lead = first.lines.origin;
+        let (mut least, mut greatest) = (first.lines.dir, first.lines.dir);
+        let mut longest = [size(&least), size(&least)];
+        let (mut t_min, mut t_max) = (first.t_min, first.t_max);
+        let mut alike = is_everywhere(&first, LaneVec3::splat(rays[0].origin));
+        for of in &all[1..=last] {
+            alike &= is_everywhere(of, lead);
+            let dir = &of.lines.dir;
+            least = each(&least, dir, L::min);
+            greatest = each(&greatest, dir, L::max);
+            longest = [longest[0].min(size(dir)), longest[1].max(size(dir))];
+            (t_min, t_max) = (t_min.min(of.t_min), t_max.max(of.t_max));
         }
-        if differing != 0 || rays.len() > MOST {
-            return None;
-        }
-        let mut dirs = [LaneVec3::splat(lead.dir); VECTORS];
-        let (mut least, mut greatest) = (dirs[0], dirs[0]);
-        let all = L::splat(lead.dir.abs().max_element());
-        let mut longest = [all, all];
-        for (vector, dirs) in dirs
-            .iter_mut()
-            .enumerate()
-            .take(rays.len().div_ceil(VECTOR))
-        {
-            let (x, y, z): (L, L, L) = (
-                gather(rays, vector, |ray| ray.dir.x),
-                gather(rays, vector, |ray| ray.dir.y),
-                gather(rays, vector, |ray| ray.dir.z),
-            );
-            *dirs = LaneVec3 { x, y, z };
-            least = LaneVec3 {
-                x: least.x.min(x),
-                y: least.y.min(y),
-                z: least.z.min(z),
-            };
-            greatest = LaneVec3 {
-                x: greatest.x.max(x),
-                y: greatest.y.max(y),
-                z: greatest.z.max(z),
-            };
-            let largest = x.abs().max(y.abs()).max(z.abs());
-            longest = [longest[0].min(largest), longest[1].max(largest)];
-        }
-        Some(Self {
+        Self {
             rays,
-            dirs,
+            lanes: all,
             interval: [
                 Vec3::new(least.x.least(), least.y.least(), least.z.least()),
                 Vec3::new(
@@ -144,115 +143,156 @@ impl<'a, L: Lane<1>> Bundle<'a, L> {
                 ),
             ],
             longest: [longest[0].least(), longest[1].greatest()],
-        })
+            t_min: t_min.least(),
+            t_max: t_max.greatest(),
+            share_origin: alike,
+        }
+    }
+
+    /// Its vectors.
+    #[inline(always)]
+    fn vectors(&self) -> usize {
+        self.rays.len().div_ceil(VECTOR)
     }
 
     /// Whether a kernel can test them together.
     #[inline(always)]
     pub fn suits<K: Kernel>(&self) -> bool {
         let mut suits = K::PACKETS;
-        for dirs in &self.dirs[..self.rays.len().div_ceil(VECTOR)] {
-            suits &= K::same_frame(&self.rays[0], dirs);
+        for lanes in &self.lanes[..self.vectors()] {
+            suits &= K::same_frame(&self.rays[0], &lanes.lines.dir);
         }
         suits
     }
 }
 
-impl<'a, T: Items, K: Kernel, I: Isa, const OCCLUSION: bool> Packet<'a, T, K, I, OCCLUSION> {
-    /// A packet of the rays of `bundle`, the first of which has index `first` in its batch.
+/// Whether all rays begin at `origin`, bit for bit.
+#[inline(always)]
+fn is_everywhere<L: Lane<1>>(lanes: &RayLanes<L>, origin: LaneVec3<L>) -> bool {
+    let own = &lanes.lines.origin;
+    let same = own.x.same_bits(origin.x) & own.y.same_bits(origin.y) & own.z.same_bits(origin.z);
+    same.bits() == 0xffff
+}
+
+/// The largest component.
+#[inline(always)]
+fn size<L: Lane<1>>(dir: &LaneVec3<L>) -> L {
+    dir.x.abs().max(dir.y.abs()).max(dir.z.abs())
+}
+
+/// `choose` of each component.
+#[inline(always)]
+fn each<L: Lane<1>>(a: &LaneVec3<L>, b: &LaneVec3<L>, choose: fn(L, L) -> L) -> LaneVec3<L> {
+    LaneVec3 {
+        x: choose(a.x, b.x),
+        y: choose(a.y, b.y),
+        z: choose(a.z, b.z),
+    }
+}
+
+impl<'a, 'p, T: Items, K: Kernel, I: Isa> Packet<'a, 'p, T, K, I> {
+    /// A packet of the rays of `bundle`, the first of which has index `first` in its batch. `room` is used again.
     #[inline(always)]
     pub fn new(
         packed: &'a Packed<T, K>,
-        bundle: &Bundle<'a, I::Rays>,
+        bundle: &'p Bundle<'a, I::Rays>,
         first: usize,
         budget: u32,
+        mut room: Vec<Vector<K, I>>,
     ) -> Self {
-        let rays = bundle.rays;
-        let lanes = |vector: usize| LaneRay {
-            origin: LaneVec3::splat(rays[0].origin),
-            dir: bundle.dirs[vector],
-        };
-        let lead = Vector::new(&packed.kernel, rays, &lanes(0), 0);
-        let mut limit = lead.farthest;
-        // Those beyond the rays are never looked at.
-        let mut vectors: [Vector<K, I>; VECTORS] = std::array::from_fn(
-            #[inline(always)]
-            |_| lead.clone(),
-        );
-        let count = rays.len().div_ceil(VECTOR);
-        for (vector, of) in vectors.iter_mut().enumerate().take(count).skip(1) {
-            *of = Vector::new(&packed.kernel, rays, &lanes(vector), vector);
-            limit = limit.max(of.farthest);
-        }
+        room.clear();
         Self {
             packed,
-            rays,
             first,
-            vectors,
-            limit,
-            dirs: bundle.interval,
+            vectors: room,
+            limit: bundle.t_max,
+            bundle,
             work: Work::default(),
             budget,
         }
     }
 
-    /// Which of eight triangles a ray can hit, as a bit a lane.
+    /// Eight triangles as the packet sees them, and which of them it can hit.
     #[inline(always)]
-    pub fn can_hit(&self, [a, b, c]: [LaneVec3<I::X8>; 3]) -> u32 {
-        let origin = LaneVec3::splat(self.rays[0].origin);
+    pub fn see(&self, [a, b, c]: [LaneVec3<I::X8>; 3]) -> Seen {
+        let origin = LaneVec3::splat(self.bundle.rays[0].origin);
         let corners = [a.minus(origin), b.minus(origin), c.minus(origin)];
-        cull::can_hit(&corners, &self.dirs)
+        Seen::new(&corners, &self.bundle.interval)
     }
 
-    /// Whether its work exceeded the budget; then it has no answers.
+    /// What it cost; `None` if that exceeded the budget: then it has no answers.
     #[inline(always)]
-    pub fn gave_up(&self) -> bool {
-        self.work.cost() > self.budget
+    pub fn cost(&self) -> Option<u32> {
+        let cost = self.work.cost();
+        (cost <= self.budget).then_some(cost)
     }
 
+    /// Writes the answers of its rays to the batch's.
     #[inline(always)]
-    fn vectors(&self) -> usize {
-        self.rays.len().div_ceil(VECTOR)
-    }
-
-    /// Hands the answers, one a ray, to `take`.
-    #[inline(always)]
-    pub fn answer(&self, mut take: impl FnMut(usize, Hit)) {
-        for (vector, of) in self.vectors[..self.vectors()].iter().enumerate() {
-            let first = vector * VECTOR;
-            let hits = of.hits();
-            for (lane, hit) in hits.into_iter().take(self.rays.len() - first).enumerate() {
-                take(self.first + first + lane, hit);
+    pub fn answer<A: Answer>(&self, answers: &mut [A]) {
+        let answers = &mut answers[self.first..self.first + self.bundle.rays.len()];
+        if self.vectors.is_empty() {
+            answers.fill(A::of(Hit::MISS));
+            return;
+        }
+        for (answers, of) in answers.chunks_mut(VECTOR).zip(&self.vectors) {
+            for (answer, hit) in answers.iter_mut().zip(of.hits()) {
+                *answer = A::of(hit);
             }
         }
     }
 
-    /// Tests one triangle against all rays.
+    /// The room it was given.
     #[inline(always)]
-    pub fn test_triangle(&mut self, prim: u32, triangle: &K::Packed<1>) {
-        let mut any = false;
-        for vector in 0..self.vectors() {
-            let (packed, rays) = (self.packed, &self.rays[vector * VECTOR..]);
-            let of = &mut self.vectors[vector];
-            let found = packed.kernel.intersect(&of.prepared, triangle);
-            if let Some(hit) = found {
-                any |= of.offer::<T, OCCLUSION>(packed, rays, (prim, triangle), &hit);
+    pub fn into_room(self) -> Vec<Vector<K, I>> {
+        self.vectors
+    }
+
+    /// Tests triangles against all rays, a vector after the other: those in the lanes of `met` that `can_be_hit` does not
+    /// rule out for a vector with these directions.
+    #[inline(always)]
+    pub fn test_triangles(
+        &mut self,
+        met: u32,
+        can_be_hit: impl Fn(usize, &LaneVec3<I::Rays>) -> bool,
+        triangle: impl Fn(usize) -> (u32, K::Packed<1>),
+    ) {
+        let (bundle, packed) = (self.bundle, self.packed);
+        if self.vectors.is_empty() {
+            for lanes in &bundle.lanes[..bundle.vectors()] {
+                let vector = Vector::new(&packed.kernel, &bundle.rays[0], lanes);
+                self.vectors.push(vector);
             }
         }
-        if any {
-            self.limit = f32::NEG_INFINITY;
-            for of in &self.vectors[..self.rays.len().div_ceil(VECTOR)] {
-                self.limit = self.limit.max(of.farthest);
+        let mut limit = f32::NEG_INFINITY;
+        for (vector, of) in self.vectors.iter_mut().enumerate() {
+            let dirs = &bundle.lanes[vector].lines.dir;
+            let mut rest = met;
+            let mut any = false;
+            while rest != 0 {
+                let lane = rest.trailing_zeros() as usize;
+                rest &= rest - 1;
+                if !can_be_hit(lane, dirs) {
+                    continue;
+                }
+                self.work.tests += 1;
+                let (prim, triangle) = triangle(lane);
+                if let Some(hit) = packed.kernel.intersect(&of.prepared, &triangle) {
+                    let rays = &bundle.rays[vector * VECTOR..];
+                    any |= of.offer(packed, rays, (prim, &triangle), &hit);
+                }
             }
+            if any {
+                of.farthest = of.limit.greatest();
+            }
+            limit = limit.max(of.farthest);
         }
+        self.limit = limit;
     }
 }
 
-impl<T: Items, K: Kernel, I: Isa, const OCCLUSION: bool> Visitor
-    for Packet<'_, T, K, I, OCCLUSION>
-{
+impl<T: Items, K: Kernel, I: Isa> Visitor for Packet<'_, '_, T, K, I> {
     const WATCHED: bool = false;
-    const ORDERED: bool = !OCCLUSION;
 
     #[inline(always)]
     fn step(&mut self, _: u64, _: bool, _: u32, _: f64, _: f64) {}
@@ -261,7 +301,7 @@ impl<T: Items, K: Kernel, I: Isa, const OCCLUSION: bool> Visitor
     fn test(&mut self, item: u32) -> bool {
         self.work.items += 1;
         T::test_packet(self, item);
-        self.gave_up() || (OCCLUSION && self.limit == f32::NEG_INFINITY)
+        self.cost().is_none()
     }
 
     #[inline(always)]

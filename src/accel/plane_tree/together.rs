@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::super::packet::Bundle;
-use super::super::packets::{TOO_DEAR, Together};
+use super::super::packets::{Refused, TOO_DEAR, Together};
 use super::super::slab::Pencil;
 use super::super::stack::Room;
 use super::super::{Rays, Visitor};
@@ -34,20 +34,22 @@ impl Together for PlaneTree {
         batch: &mut R,
         range: Range<usize>,
         room: &mut Room,
-    ) -> Option<u32> {
+    ) -> Result<u32, Refused> {
         let first = range.start;
-        let bundle = Bundle::new(&batch.rays()[range])?;
-        let pencil = Pencil::new(&bundle, &self.bounds)?;
+        let bundle = Bundle::new::<R::Isa>(&batch.rays()[range]);
+        let pencil = Pencil::new(&bundle, &self.bounds).ok_or(Refused::Unlike)?;
         let budget = TOO_DEAR * bundle.rays.len() as u32;
-        let mut packet = batch.begin_packet(&bundle, first, budget)?;
+        let mut packet = batch
+            .begin_packet(&bundle, first, budget)
+            .ok_or(Refused::Unlike)?;
         let mut walk = begin(self, pencil, room, packet.t_limit());
         while let Some(blocks) = next(&mut walk, self, packet.t_limit()) {
             for block in blocks {
                 if packet.test(block) {
-                    return batch.finish_packet(&packet);
+                    return batch.finish_packet(packet).ok_or(Refused::TooDear);
                 }
             }
         }
-        batch.finish_packet(&packet)
+        batch.finish_packet(packet).ok_or(Refused::TooDear)
     }
 }

@@ -3,7 +3,7 @@
 //! The rays come from one octant, so that the near planes of a box are the same for all. The formulas are those of
 //! [`super::wide`].
 
-use crate::geometry::lanes::{Lane, LaneMask, LaneRay};
+use crate::geometry::lanes::{Lane, LaneMask, RayLanes};
 
 use super::wide::{FAR, LENGTHS, OFFSET_PAD, Scene};
 use super::{CONE, RANGE, WideCorners, WideSlabRay};
@@ -22,8 +22,8 @@ pub(in super::super) struct SlabRays<L> {
 impl<L: Lane<1>> SlabRays<L> {
     /// The rays, all with direction signs `near`, and a bit for each that is plain; what is computed of others means nothing.
     #[inline(always)]
-    pub fn new(rays: &LaneRay<L>, t_min: L, near: [usize; 3], scene: &Scene) -> (Self, u32) {
-        let (origin, dir) = (&rays.origin, &rays.dir);
+    pub fn new(rays: &RayLanes<L>, near: [usize; 3], scene: &Scene) -> (Self, u32) {
+        let (origin, dir, t_min) = (&rays.lines.origin, &rays.lines.dir, rays.t_min);
         let size = [dir.x.abs(), dir.y.abs(), dir.z.abs()];
         let longest = size[0].max(size[1]).max(size[2]);
         let shortest = size[0].min(size[1]).min(size[2]);

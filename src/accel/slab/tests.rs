@@ -1,7 +1,7 @@
 use super::super::testbed::Dice;
 use super::*;
 use crate::geometry::Vec3;
-use crate::geometry::lanes::{InstructionSet, Isa, Lane, LaneMask, LaneRay, Task};
+use crate::geometry::lanes::{InstructionSet, Isa, Lane, LaneMask, Task};
 
 /// A ray and a box of whole numbers, so that all of it can be judged exactly.
 #[derive(Debug)]
@@ -83,8 +83,7 @@ impl Task for InLanes {
             .dir
             .to_array()
             .map(|d| usize::from(d.is_sign_negative()));
-        let lanes = LaneRay::<I::Rays>::of(|_| &ray);
-        let (rays, plain) = SlabRays::new(&lanes, I::Rays::splat(0.0), near, &scene);
+        let (rays, plain) = SlabRays::new(&I::rays(&[ray; 16]), near, &scene);
         let (entry, exit) = rays.clip(&boxes, 3, I::Rays::splat(f32::INFINITY));
         let of_sixteen = entry.le(exit).bits() >> 5 & 1 == 1;
         (met != 0, (plain >> 5 & 1 == 1).then_some(of_sixteen))

@@ -87,6 +87,14 @@ fn numbers<L: Lane<8>>(lanes: L) -> [f32; 8] {
 }
 
 impl WideSlabRay {
+    /// A ray that meets nothing known: for a walk that tests no box.
+    pub const NONE: Self = Self {
+        inverse: [0.0; 8],
+        offset: [0.0; 8],
+        near: [0; 3],
+        t_min: 0.0,
+    };
+
     /// Prepares a valid ray.
     #[inline(always)]
     pub fn new<L: Lane<8>>(ray: &Ray, scene: &Scene) -> Self {

@@ -8,19 +8,23 @@
 )]
 
 use std::arch::x86_64::{
-    __m256, __m256i, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_add_epi32, _mm256_add_ps,
-    _mm256_and_ps, _mm256_and_si256, _mm256_andnot_ps, _mm256_blend_epi32, _mm256_blendv_ps,
-    _mm256_castps_si256, _mm256_castsi256_ps, _mm256_cmp_ps, _mm256_div_ps, _mm256_fmadd_ps,
-    _mm256_fmsub_ps, _mm256_loadu_ps, _mm256_loadu_si256, _mm256_max_epu32, _mm256_max_ps,
+    __m256, __m256i, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm_loadu_ps, _mm256_add_epi32,
+    _mm256_add_ps, _mm256_and_ps, _mm256_and_si256, _mm256_andnot_ps, _mm256_blend_epi32,
+    _mm256_blendv_ps, _mm256_castps_si256, _mm256_castps128_ps256, _mm256_castsi256_ps,
+    _mm256_cmp_ps, _mm256_cmpeq_epi32, _mm256_div_ps, _mm256_fmadd_ps, _mm256_fmsub_ps,
+    _mm256_insertf128_ps, _mm256_loadu_ps, _mm256_loadu_si256, _mm256_max_epu32, _mm256_max_ps,
     _mm256_min_epu32, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_or_ps,
     _mm256_or_si256, _mm256_permutevar8x32_epi32, _mm256_set1_epi32, _mm256_set1_ps,
-    _mm256_setr_epi32, _mm256_sllv_epi32, _mm256_sqrt_ps, _mm256_srai_epi32, _mm256_storeu_ps,
-    _mm256_storeu_si256, _mm256_sub_epi32, _mm256_sub_ps, _mm256_xor_ps,
+    _mm256_setr_epi32, _mm256_shuffle_ps, _mm256_sllv_epi32, _mm256_sqrt_ps, _mm256_srai_epi32,
+    _mm256_storeu_ps, _mm256_storeu_si256, _mm256_sub_epi32, _mm256_sub_ps, _mm256_unpackhi_ps,
+    _mm256_unpacklo_ps, _mm256_xor_ps,
 };
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 use super::isa::LANE_BITS;
-use super::{Lane, LaneMask};
+use super::rows::transpose_quarters;
+use super::{Lane, LaneMask, Pair, RayLanes, SIXTEEN};
+use crate::geometry::Ray;
 
 /// Eight `f32`.
 #[derive(Debug, Clone, Copy)]
@@ -128,6 +132,10 @@ impl Lane<8> for F32x8 {
         Self(unsafe { _mm256_fmsub_ps(self.0, factor.0, term.0) })
     }
     #[inline(always)]
+    fn mul_add_freely(self, factor: Self, term: Self) -> Self {
+        self.mul_add(factor, term)
+    }
+    #[inline(always)]
     fn abs(self) -> Self {
         // SAFETY: as above.
         Self(unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0) })
@@ -156,6 +164,57 @@ impl Lane<8> for F32x8 {
     fn eq(self, other: Self) -> Mask8 {
         // SAFETY: as above.
         Mask8(unsafe { _mm256_cmp_ps::<_CMP_EQ_OQ>(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn same_bits(self, other: Self) -> Mask8 {
+        // SAFETY: as above.
+        Mask8(unsafe {
+            _mm256_castsi256_ps(_mm256_cmpeq_epi32(
+                _mm256_castps_si256(self.0),
+                _mm256_castps_si256(other.0),
+            ))
+        })
+    }
+}
+
+/// See [`super::Isa::rays`].
+#[inline(always)]
+pub(super) fn rays(rays: &[Ray; SIXTEEN]) -> RayLanes<Pair<F32x8>> {
+    let [first, second] = [columns::<0>(rays, 0), columns::<0>(rays, 8)];
+    let [first_dirs, second_dirs] = [columns::<4>(rays, 0), columns::<4>(rays, 8)];
+    RayLanes::of_columns(paired(first, second), paired(first_dirs, second_dirs))
+}
+
+/// Columns of the first and of the last eight rays side by side.
+#[inline(always)]
+fn paired([a, b, c, d]: [F32x8; 4], [e, f, g, h]: [F32x8; 4]) -> [Pair<F32x8>; 4] {
+    [Pair(a, e), Pair(b, f), Pair(c, g), Pair(d, h)]
+}
+
+/// Four numbers, from number `AT` on, of the eight rays from `first` on: a register each.
+#[inline(always)]
+fn columns<const AT: usize>(rays: &[Ray; SIXTEEN], first: usize) -> [F32x8; 4] {
+    /// Those numbers of a ray and of the fourth after it.
+    macro_rules! quarters {
+        ($numbers:expr, $ray:literal) => {
+            _mm256_insertf128_ps::<1>(
+                _mm256_castps128_ps256(_mm_loadu_ps($numbers.add(8 * $ray))),
+                _mm_loadu_ps($numbers.add(8 * ($ray + 4))),
+            )
+        };
+    }
+    let eight: &[Ray] = &rays[first..first + 8];
+    // SAFETY: AVX was detected; a ray is eight numbers, and those from `AT` to `AT` + 4 of eight rays are read.
+    unsafe {
+        let numbers = eight.as_ptr().cast::<f32>().add(AT);
+        transpose_quarters!(
+            _mm256_unpacklo_ps _mm256_unpackhi_ps _mm256_shuffle_ps,
+            quarters!(numbers, 0),
+            quarters!(numbers, 1),
+            quarters!(numbers, 2),
+            quarters!(numbers, 3)
+        )
+        .map(F32x8)
     }
 }
 

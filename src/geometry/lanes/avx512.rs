@@ -8,29 +8,35 @@
 )]
 
 use std::arch::x86_64::{
-    __m128i, __m256, __m256i, __m512, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm_mask_blend_epi32,
-    _mm_max_epu32, _mm_min_epu32, _mm_shuffle_epi32, _mm_storeu_si128, _mm256_add_ps,
-    _mm256_and_si256, _mm256_andnot_ps, _mm256_castps_si256, _mm256_castsi128_si256,
-    _mm256_castsi256_si128, _mm256_cmp_ps_mask, _mm256_div_ps, _mm256_fmadd_ps, _mm256_fmsub_ps,
-    _mm256_loadu_ps, _mm256_loadu_si256, _mm256_mask_blend_epi32, _mm256_mask_blend_ps,
-    _mm256_maskz_compress_epi32, _mm256_maskz_compress_ps, _mm256_max_epu32, _mm256_max_ps,
-    _mm256_min_epu32, _mm256_min_ps, _mm256_mul_ps, _mm256_or_si256, _mm256_permutevar8x32_epi32,
-    _mm256_set1_epi32, _mm256_set1_ps, _mm256_setr_epi32, _mm256_sqrt_ps, _mm256_storeu_ps,
-    _mm256_storeu_si256, _mm256_sub_ps, _mm256_xor_ps, _mm512_add_ps, _mm512_andnot_ps,
-    _mm512_cmp_ps_mask, _mm512_div_ps, _mm512_fmadd_ps, _mm512_fmsub_ps, _mm512_loadu_ps,
-    _mm512_mask_blend_ps, _mm512_max_ps, _mm512_min_ps, _mm512_mul_ps, _mm512_reduce_min_ps,
-    _mm512_set1_ps, _mm512_sqrt_ps, _mm512_storeu_ps, _mm512_sub_ps, _mm512_xor_ps,
+    __m128i, __m256, __m256i, __m512, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm_loadu_ps,
+    _mm_mask_blend_epi32, _mm_max_epu32, _mm_min_epu32, _mm_shuffle_epi32, _mm_storeu_ps,
+    _mm_storeu_si128, _mm256_add_ps, _mm256_and_si256, _mm256_andnot_ps, _mm256_castps_si256,
+    _mm256_castsi128_si256, _mm256_castsi256_si128, _mm256_cmp_ps_mask, _mm256_cmpeq_epi32_mask,
+    _mm256_div_ps, _mm256_fmadd_ps, _mm256_fmsub_ps, _mm256_loadu_ps, _mm256_loadu_si256,
+    _mm256_mask_blend_epi32, _mm256_mask_blend_ps, _mm256_maskz_compress_epi32,
+    _mm256_maskz_compress_ps, _mm256_max_epu32, _mm256_max_ps, _mm256_min_epu32, _mm256_min_ps,
+    _mm256_mul_ps, _mm256_or_si256, _mm256_permutevar8x32_epi32, _mm256_set1_epi32, _mm256_set1_ps,
+    _mm256_setr_epi32, _mm256_sqrt_ps, _mm256_storeu_ps, _mm256_storeu_si256, _mm256_sub_ps,
+    _mm256_xor_ps, _mm512_add_ps, _mm512_andnot_ps, _mm512_castps_si512, _mm512_castps128_ps512,
+    _mm512_cmp_ps_mask, _mm512_cmpeq_epi32_mask, _mm512_div_ps, _mm512_extractf32x4_ps,
+    _mm512_fmadd_ps, _mm512_fmsub_ps, _mm512_insertf32x4, _mm512_loadu_ps, _mm512_mask_blend_ps,
+    _mm512_max_ps, _mm512_min_ps, _mm512_mul_ps, _mm512_reduce_min_ps, _mm512_set1_ps,
+    _mm512_shuffle_ps, _mm512_sqrt_ps, _mm512_storeu_ps, _mm512_sub_ps, _mm512_unpackhi_ps,
+    _mm512_unpacklo_ps, _mm512_xor_ps,
 };
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 use super::isa::LANE_BITS;
-use super::{Lane, LaneMask};
+use super::rows::transpose_quarters;
+use super::{HitLanes, Lane, LaneMask, RayLanes, SIXTEEN};
+use crate::geometry::{Hit, Ray};
 
 macro_rules! lanes {
     (
         $numbers:ident($register:ty), $mask:ident($bits:ty), $n:literal, triangles $w:literal,
         load $load:expr, $set1:ident $loadu:ident $storeu:ident $add:ident $sub:ident $mul:ident $div:ident
         $fma:ident $fms:ident $max:ident $min:ident $xor:ident $andnot:ident $sqrt:ident $blend:ident $cmp:ident
+        $cast:ident $same:ident
         $(, $least:item)?
     ) => {
         #[doc = concat!(stringify!($n), " `f32`.")]
@@ -124,6 +130,10 @@ macro_rules! lanes {
                 Self(unsafe { $fms(self.0, factor.0, term.0) })
             }
             #[inline(always)]
+            fn mul_add_freely(self, factor: Self, term: Self) -> Self {
+                self.mul_add(factor, term)
+            }
+            #[inline(always)]
             fn write(self, room: &mut [f32]) {
                 if let Some(room) = room.first_chunk_mut::<$n>() {
                     // SAFETY: there is room for all numbers.
@@ -171,6 +181,11 @@ macro_rules! lanes {
                 // SAFETY: as above.
                 $mask(unsafe { $cmp::<_CMP_EQ_OQ>(self.0, other.0) })
             }
+            #[inline(always)]
+            fn same_bits(self, other: Self) -> $mask {
+                // SAFETY: as above.
+                $mask(unsafe { $same($cast(self.0), $cast(other.0)) })
+            }
         }
     };
     (@binary $numbers:ident $trait:ident $method:ident $op:ident) => {
@@ -191,19 +206,77 @@ lanes!(
     load |xs: &[f32; 8]| F32x8(unsafe { _mm256_loadu_ps(xs.as_ptr()) }),
     _mm256_set1_ps _mm256_loadu_ps _mm256_storeu_ps _mm256_add_ps _mm256_sub_ps _mm256_mul_ps _mm256_div_ps
     _mm256_fmadd_ps _mm256_fmsub_ps _mm256_max_ps _mm256_min_ps _mm256_xor_ps _mm256_andnot_ps _mm256_sqrt_ps _mm256_mask_blend_ps _mm256_cmp_ps_mask
+    _mm256_castps_si256 _mm256_cmpeq_epi32_mask
 );
 
 lanes!(
     F32x16(__m512), Mask16(u16), 16, triangles 1,
     load |xs: &[f32; 1]| F32x16::splat(xs[0]),
     _mm512_set1_ps _mm512_loadu_ps _mm512_storeu_ps _mm512_add_ps _mm512_sub_ps _mm512_mul_ps _mm512_div_ps
-    _mm512_fmadd_ps _mm512_fmsub_ps _mm512_max_ps _mm512_min_ps _mm512_xor_ps _mm512_andnot_ps _mm512_sqrt_ps _mm512_mask_blend_ps _mm512_cmp_ps_mask,
+    _mm512_fmadd_ps _mm512_fmsub_ps _mm512_max_ps _mm512_min_ps _mm512_xor_ps _mm512_andnot_ps _mm512_sqrt_ps _mm512_mask_blend_ps _mm512_cmp_ps_mask
+    _mm512_castps_si512 _mm512_cmpeq_epi32_mask,
     #[inline(always)]
     fn least(self) -> f32 {
         // SAFETY: as above.
         unsafe { _mm512_reduce_min_ps(self.0) }
     }
 );
+
+/// See [`super::Isa::rays`].
+#[inline(always)]
+pub(super) fn rays(rays: &[Ray; SIXTEEN]) -> RayLanes<F32x16> {
+    RayLanes::of_columns(columns::<0>(rays), columns::<4>(rays))
+}
+
+/// Four numbers of each ray, from number `AT` on: a register each.
+#[inline(always)]
+fn columns<const AT: usize>(rays: &[Ray; SIXTEEN]) -> [F32x16; 4] {
+    /// Those numbers of a ray and of every fourth after it.
+    macro_rules! quarters {
+        ($numbers:expr, $ray:literal) => {{
+            let first = _mm512_castps128_ps512(_mm_loadu_ps($numbers.add(8 * $ray)));
+            let two = _mm512_insertf32x4::<1>(first, _mm_loadu_ps($numbers.add(8 * ($ray + 4))));
+            let three = _mm512_insertf32x4::<2>(two, _mm_loadu_ps($numbers.add(8 * ($ray + 8))));
+            _mm512_insertf32x4::<3>(three, _mm_loadu_ps($numbers.add(8 * ($ray + 12))))
+        }};
+    }
+    // SAFETY: AVX-512 was detected; a ray is eight numbers, and those from `AT` to `AT` + 4 of sixteen rays are read.
+    unsafe {
+        let numbers = rays.as_ptr().cast::<f32>().add(AT);
+        let [a, b, c, d] = transpose_quarters!(
+            _mm512_unpacklo_ps _mm512_unpackhi_ps _mm512_shuffle_ps,
+            quarters!(numbers, 0),
+            quarters!(numbers, 1),
+            quarters!(numbers, 2),
+            quarters!(numbers, 3)
+        );
+        [F32x16(a), F32x16(b), F32x16(c), F32x16(d)]
+    }
+}
+
+/// See [`super::Isa::hits`].
+#[inline(always)]
+pub(super) fn hits(lanes: &HitLanes<F32x16>, hits: &mut [Hit; SIXTEEN]) {
+    // SAFETY: AVX-512 was detected; a hit is four numbers, and those of sixteen are written.
+    unsafe {
+        let numbers = hits.as_mut_ptr().cast::<f32>();
+        let rows = transpose_quarters!(
+            _mm512_unpacklo_ps _mm512_unpackhi_ps _mm512_shuffle_ps,
+            lanes.t.0,
+            lanes.u.0,
+            lanes.v.0,
+            lanes.prim.0
+        );
+        for (hit, row) in rows.into_iter().enumerate() {
+            // Of every fourth hit from this one on.
+            let place = numbers.add(4 * hit);
+            _mm_storeu_ps(place, _mm512_extractf32x4_ps::<0>(row));
+            _mm_storeu_ps(place.add(16), _mm512_extractf32x4_ps::<1>(row));
+            _mm_storeu_ps(place.add(32), _mm512_extractf32x4_ps::<2>(row));
+            _mm_storeu_ps(place.add(48), _mm512_extractf32x4_ps::<3>(row));
+        }
+    }
+}
 
 /// See [`super::Isa::greatest_first`]: the keys are compressed to the front and sorted by a network, of four where four
 /// suffice, and the values are permuted by the lanes' numbers that the keys carry.

@@ -23,7 +23,8 @@
 
 use std::fmt::{self, Display};
 
-use super::{F32x8, Lane, Pair};
+use super::{F32x8, HitLanes, Lane, Pair, RayLanes, SIXTEEN};
+use crate::geometry::{Hit, Ray};
 
 #[cfg(all(target_arch = "x86_64", not(debug_assertions)))]
 use super::{avx2, avx512};
@@ -61,6 +62,19 @@ pub trait Isa: Copy + Send + Sync + 'static {
         sorted_values: &mut [u32; 8],
         sorted_keys: &mut [f32; 8],
     );
+
+    /// Sixteen rays, a lane each.
+    #[must_use]
+    #[inline(always)]
+    fn rays(rays: &[Ray; SIXTEEN]) -> RayLanes<Self::Rays> {
+        RayLanes::gathered(rays)
+    }
+
+    /// Writes sixteen hits.
+    #[inline(always)]
+    fn hits(lanes: &HitLanes<Self::Rays>, hits: &mut [Hit; SIXTEEN]) {
+        lanes.scattered(hits);
+    }
 
     /// Writes the `values` and `keys` of the lanes whose bit is set in `met` to the front of the two rooms, in the order of
     /// the lanes; what lies behind is overwritten with anything.
@@ -164,6 +178,11 @@ impl Isa for Avx2 {
     ) {
         avx2::greatest_first(keys, met, values, sorted_values, sorted_keys);
     }
+
+    #[inline(always)]
+    fn rays(rays: &[Ray; SIXTEEN]) -> RayLanes<Self::Rays> {
+        avx2::rays(rays)
+    }
 }
 
 #[cfg(all(target_arch = "x86_64", not(debug_assertions)))]
@@ -186,6 +205,16 @@ impl Isa for Avx512 {
         sorted_keys: &mut [f32; 8],
     ) {
         avx512::greatest_first(keys, met, values, sorted_values, sorted_keys);
+    }
+
+    #[inline(always)]
+    fn rays(rays: &[Ray; SIXTEEN]) -> RayLanes<Self::Rays> {
+        avx512::rays(rays)
+    }
+
+    #[inline(always)]
+    fn hits(lanes: &HitLanes<Self::Rays>, hits: &mut [Hit; SIXTEEN]) {
+        avx512::hits(lanes, hits);
     }
 
     #[inline(always)]

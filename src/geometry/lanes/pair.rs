@@ -6,7 +6,7 @@ use super::{Lane, LaneMask};
 
 /// The first eight and the last eight of sixteen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Pair<T>(T, T);
+pub struct Pair<T>(pub(super) T, pub(super) T);
 
 macro_rules! operators {
     ($($trait:ident $method:ident),*) => {$(
@@ -93,6 +93,20 @@ impl<L: Lane<8>> Lane<1> for Pair<L> {
         )
     }
     #[inline(always)]
+    fn mul_sub_freely(self, factor: Self, term: Self) -> Self {
+        Self(
+            self.0.mul_sub_freely(factor.0, term.0),
+            self.1.mul_sub_freely(factor.1, term.1),
+        )
+    }
+    #[inline(always)]
+    fn mul_add_freely(self, factor: Self, term: Self) -> Self {
+        Self(
+            self.0.mul_add_freely(factor.0, term.0),
+            self.1.mul_add_freely(factor.1, term.1),
+        )
+    }
+    #[inline(always)]
     fn abs(self) -> Self {
         Self(self.0.abs(), self.1.abs())
     }
@@ -115,5 +129,9 @@ impl<L: Lane<8>> Lane<1> for Pair<L> {
     #[inline(always)]
     fn eq(self, other: Self) -> Self::Mask {
         Pair(self.0.eq(other.0), self.1.eq(other.1))
+    }
+    #[inline(always)]
+    fn same_bits(self, other: Self) -> Self::Mask {
+        Pair(self.0.same_bits(other.0), self.1.same_bits(other.1))
     }
 }

@@ -156,4 +156,8 @@ impl Lane<8> for F32x8 {
     fn eq(self, other: Self) -> Mask8 {
         compare(self, other, |a, b| a == b)
     }
+    #[inline(always)]
+    fn same_bits(self, other: Self) -> Mask8 {
+        compare(self, other, |a, b| a.to_bits() == b.to_bits())
+    }
 }

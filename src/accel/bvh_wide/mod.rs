@@ -179,9 +179,7 @@ impl Structure for BvhWide {
 
     #[inline(always)]
     fn traverse<I: Isa, V: Visitor>(&self, ray: &Ray, stacks: &mut Stacks, visitor: &mut V) {
-        let [stack] = stacks.first(1) else {
-            return;
-        };
+        let stack = stacks.one();
         let mut walk = Walk::<I>::new(self, ray);
         while walk.step(self, stack, visitor) {}
     }

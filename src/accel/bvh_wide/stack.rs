@@ -38,11 +38,15 @@ impl Stacks {
         &mut self.single[..count]
     }
 
+    /// A stack for one ray.
+    #[inline(always)]
+    pub(super) fn one(&mut self) -> &mut Stack {
+        &mut self.first(1)[0]
+    }
+
     /// A stack for one ray, and one for a group.
     pub(super) fn with_group(&mut self) -> (&mut Stack, &mut GroupStack) {
-        if self.single.is_empty() {
-            self.single.push(Stack::new());
-        }
+        self.first(1);
         (&mut self.single[0], self.group.get_or_insert_default())
     }
 }
@@ -65,25 +69,8 @@ impl Stack {
         ))
     }
 
-    /// Puts those of `children` whose bit is set in `met` above the first `waiting`, the nearest on top; returns the place
-    /// of the nearest.
-    #[inline(always)]
-    pub(super) fn push_ordered<I: Isa>(
-        &mut self,
-        waiting: usize,
-        entries: I::X8,
-        met: u32,
-        children: &[u32; 8],
-    ) -> usize {
-        let Some((above, keys)) = self.above(waiting) else {
-            return waiting;
-        };
-        let positive = entries.max(I::X8::splat(0.0));
-        I::greatest_first(positive, met, children, above, keys);
-        waiting + met.count_ones() as usize - 1
-    }
-
-    /// As [`Stack::push_ordered`], the child in the last lane on top.
+    /// Puts those of `children` whose bit is set in `met` above the first `waiting`, the nearest on top if they are to be
+    /// `ordered`; returns the place of the one on top.
     #[inline(always)]
     pub(super) fn push<I: Isa>(
         &mut self,
@@ -91,11 +78,17 @@ impl Stack {
         entries: I::X8,
         met: u32,
         children: &[u32; 8],
+        ordered: bool,
     ) -> usize {
         let Some((above, keys)) = self.above(waiting) else {
             return waiting;
         };
-        I::compress(entries.max(I::X8::splat(0.0)), met, children, above, keys);
+        let positive = entries.max(I::X8::splat(0.0));
+        if ordered {
+            I::greatest_first(positive, met, children, above, keys);
+        } else {
+            I::compress(positive, met, children, above, keys);
+        }
         waiting + met.count_ones() as usize - 1
     }
 

@@ -22,9 +22,7 @@ impl Together for BvhWide {
     ) -> Result<u32, Refused> {
         let (first, rays) = (range.start, &batch.rays()[range]);
         let budget = TOO_DEAR * rays.len() as u32;
-        let [stack] = stacks.first(1) else {
-            return Err(Refused::Unlike);
-        };
+        let stack = stacks.one();
         let bundle = Bundle::new::<R::Isa>(rays);
         let slabs = PacketSlabs::<<R::Isa as Isa>::X8>::new(&bundle, &self.scene.bounds)
             .ok_or(Refused::Unlike)?;

@@ -79,12 +79,9 @@ impl<I: Isa, C: Clip<I::X8>> Walk<I, C> {
                         self.entry = entries.get(lane);
                     }
                 } else {
-                    let put = if V::ORDERED {
-                        Stack::push_ordered::<I>
-                    } else {
-                        Stack::push::<I>
-                    };
-                    self.waiting = put(stack, self.waiting, entries, met, &node.children);
+                    let children = &node.children;
+                    self.waiting =
+                        stack.push::<I>(self.waiting, entries, met, children, V::ORDERED);
                     (self.next, self.entry) = stack.at(self.waiting);
                 }
                 return true;

@@ -1,12 +1,12 @@
 //! Sixteen rays, a lane each, against one box.
 //!
 //! The rays come from one octant, so that the near planes of a box are the same for all. The formulas are those of
-//! [`super::wide`].
+//! [`super::wide`], with rays in lanes in place of axes.
 
 use crate::geometry::lanes::{Lane, LaneMask, RayLanes};
 
-use super::wide::{FAR, LENGTHS, OFFSET_PAD, Scene};
-use super::{CONE, RANGE, WideCorners, WideSlabRay};
+use super::wide::{FAR, Scene, is_plain, moved, padded, share};
+use super::{CONE, WideCorners, WideSlabRay};
 
 /// The rays.
 #[derive(Debug, Clone, Copy)]
@@ -28,15 +28,8 @@ impl<L: Lane<1>> SlabRays<L> {
         let longest = size[0].max(size[1]).max(size[2]);
         let shortest = size[0].min(size[1]).min(size[2]);
         let farthest = origin.x.abs().max(origin.y.abs()).max(origin.z.abs());
+        let is_plain = is_plain([shortest, longest], farthest, t_min, scene);
         let width = longest * L::splat(CONE);
-        let room = shortest * L::splat(LENGTHS);
-        let is_plain = shortest.gt(width + width)
-            & t_min.ge(L::splat(0.0))
-            & longest.lt(L::splat(RANGE))
-            & longest.gt(L::splat(1.0 / RANGE))
-            & farthest.lt(L::splat(RANGE))
-            & farthest.lt(room)
-            & L::splat(scene.largest).lt(room);
         let (x, x_offset) = Self::axis(origin.x, dir.x, width);
         let (y, y_offset) = Self::axis(origin.y, dir.y, width);
         let (z, z_offset) = Self::axis(origin.z, dir.z, width);
@@ -49,16 +42,15 @@ impl<L: Lane<1>> SlabRays<L> {
         (rays, is_plain.bits())
     }
 
-    /// Inverses and offsets of one axis.
+    /// Inverses and offsets of one axis, for near planes and far ones.
     #[inline(always)]
     fn axis(origin: L, dir: L, width: L) -> ([L; 2], [L; 2]) {
         let inverse = L::splat(1.0) / dir;
-        let x = inverse.abs() * width;
-        let near = inverse - inverse * x;
-        let far = inverse + inverse * (x + L::splat(2.0) * x * x);
-        let (first, last) = (origin * near, origin * far);
-        let pad = |offset: L| offset.abs() * L::splat(OFFSET_PAD) + L::splat(f32::MIN_POSITIVE);
-        ([near, far], [first + pad(first), last - pad(last)])
+        let (share, one) = (share(inverse, width), L::splat(1.0));
+        let near = moved(inverse, share, -one);
+        let far = moved(inverse, share, one + L::splat(2.0) * share);
+        let offsets = [padded(origin * near, -one), padded(origin * far, one)];
+        ([near, far], offsets)
     }
 
     /// Where the rays enter and leave a child's box, each until its limit; it is missed if the first is greater than the

@@ -53,14 +53,14 @@ const SQUARE: [f32; 8] = [0.0, 0.0, 0.0, 0.0, 2.0, 2.0, 2.0, 2.0];
 
 /// Pad of an offset in units of itself: 4u. Its own rounding takes one, that of the pad another, and that of the product
 /// with the plane, where it is not fused, a third and what of it concerns `t` is the cone's.
-pub(super) const OFFSET_PAD: f32 = 2.0 * f32::EPSILON;
+const OFFSET_PAD: f32 = 2.0 * f32::EPSILON;
 
 /// An inverse, in units of that of the longest component, beyond every inverse of an axis whose component is not thin: a
 /// plane is met outside the scene, by a wide margin, unless it lies within the pad of the origin.
 const THIN: f32 = 1e12;
 
 /// How much longer a coordinate may be than a component of the direction, so that no quotient overflows.
-pub(super) const LENGTHS: f32 = 1e24;
+const LENGTHS: f32 = 1e24;
 
 impl Scene {
     /// Whose box is `bounds`.
@@ -70,6 +70,46 @@ impl Scene {
             largest: bounds.min.abs().max(bounds.max.abs()).max_element(),
         }
     }
+}
+
+/// Whether the formulas below hold for rays whose directions have components of these sizes at least and at most, whose
+/// origins are so far along an axis at most.
+#[inline(always)]
+pub(super) fn is_plain<L: Lane<1>>(
+    [shortest, longest]: [L; 2],
+    farthest: L,
+    t_min: L,
+    scene: &Scene,
+) -> L::Mask {
+    let width = longest * L::splat(CONE);
+    let room = shortest * L::splat(LENGTHS);
+    shortest.gt(width + width)
+        & t_min.ge(L::splat(0.0))
+        & longest.lt(L::splat(RANGE))
+        & longest.gt(L::splat(1.0 / RANGE))
+        & farthest.lt(L::splat(RANGE))
+        & farthest.lt(room)
+        & L::splat(scene.largest).lt(room)
+}
+
+/// The cone's width in units of the components with these inverses: at most 1/2.
+#[inline(always)]
+pub(super) fn share<const W: usize, L: Lane<W>>(inverse: L, width: L) -> L {
+    inverse.abs() * width
+}
+
+/// Inverses of components whose cones have a `share` of them: for `bend` = -1 not more than 1 / (d + w), and for
+/// 1 + 2 · share not less than 1 / (d - w).
+#[inline(always)]
+pub(super) fn moved<const W: usize, L: Lane<W>>(inverse: L, share: L, bend: L) -> L {
+    inverse + inverse * (share * bend)
+}
+
+/// Offsets, less for far planes, so that they are met later, and more for near ones; whatever is rounded.
+#[inline(always)]
+pub(super) fn padded<const W: usize, L: Lane<W>>(offset: L, movement: L) -> L {
+    let pad = offset.abs() * L::splat(OFFSET_PAD) + L::splat(f32::MIN_POSITIVE);
+    offset - movement * pad
 }
 
 /// Four numbers, the last of which does not matter, twice.
@@ -101,36 +141,22 @@ impl WideSlabRay {
         let size = ray.dir.abs();
         let (longest, shortest) = (size.max_element(), size.min_element());
         let farthest = ray.origin.abs().max_element();
-        let width = CONE * longest;
-        let is_plain = shortest > 2.0 * width
-            && ray.t_min >= 0.0
-            && longest < RANGE
-            && longest > 1.0 / RANGE
-            && farthest < RANGE
-            && farthest < LENGTHS * shortest
-            && scene.largest < LENGTHS * shortest;
-        let (inverse, offset, t_min) = if is_plain {
-            let (movement, square) = (L::load(&MOVE), L::load(&SQUARE));
+        let (movement, square) = (L::load(&MOVE), L::load(&SQUARE));
+        let (inverse, offset, t_min) = if is_plain([shortest, longest], farthest, ray.t_min, scene)
+        {
             let inverse = L::splat(1.0) / twice(ray.dir, ray.t_max);
-            // The cone's width in units of the component: at most 1/2.
-            let x = inverse.abs() * L::splat(width);
-            // Not more than 1 / (d + w), and not less than 1 / (d - w): with x, 1 - x and 1 + x + 2x².
-            let inverse = inverse + inverse * (x * (movement + square * x));
-            (
-                inverse,
-                twice::<L>(ray.origin, ray.t_min) * inverse,
-                ray.t_min,
-            )
+            let share = share(inverse, L::splat(CONE * longest));
+            let inverse = moved(inverse, share, movement + square * share);
+            let offset = twice::<L>(ray.origin, ray.t_min) * inverse;
+            (inverse, offset, ray.t_min)
         } else {
             let rare = Self::rare(ray, scene);
             (L::load(&rare.inverse), L::load(&rare.offset), rare.t_min)
         };
-        // Less for far planes, so that they are met later; whatever is rounded.
-        let pad = offset.abs() * L::splat(OFFSET_PAD) + L::splat(f32::MIN_POSITIVE);
         let side = |d: f32| (d.to_bits() >> 31) as usize;
         Self {
             inverse: numbers(inverse),
-            offset: numbers(offset - L::load(&MOVE) * pad),
+            offset: numbers(padded(offset, movement)),
             near: [side(ray.dir.x), side(ray.dir.y), side(ray.dir.z)],
             t_min,
         }

@@ -9,8 +9,10 @@ use super::{build_ms, cell, fastest, short};
 /// Which runs of Embree a goal allows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Against {
+    /// Single rays or packets, medium or high quality; also packets whose caller promises that they are coherent.
+    Promised,
     /// Single rays or packets, medium or high quality.
-    Any,
+    Packets,
     /// Single rays, medium or high quality.
     Single,
     /// Single rays or packets over the tree of medium quality.
@@ -23,10 +25,31 @@ struct Goal {
     own: &'static [&'static str],
     rays: &'static [&'static str],
     against: Against,
-    /// Asked of the geometric mean over scenes.
-    mean: f64,
+    /// Asked of the geometric mean over scenes; `None` where it is there for comparison.
+    mean: Option<f64>,
     /// Asked of each scene.
     least: Option<f64>,
+}
+
+impl Against {
+    fn allows(self, run: &Run) -> bool {
+        let mode = run.params.text("mode");
+        match self {
+            Self::Promised => true,
+            Self::Packets => mode != "coherent",
+            Self::Single => mode == "single",
+            Self::Medium => mode != "coherent" && run.params.text("quality") == "medium",
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Promised => "promised",
+            Self::Packets => "packets",
+            Self::Single => "single",
+            Self::Medium => "medium",
+        }
+    }
 }
 
 const WIDE: &[&str] = &["bvh-wide"];
@@ -35,16 +58,18 @@ const KD: &[&str] = &["kd-tree"];
 
 #[rustfmt::skip]
 const GOALS: &[Goal] = &[
-    Goal { own: WIDE, rays: &["primary"], against: Against::Any, mean: 2.0, least: Some(1.4) },
-    Goal { own: WIDE, rays: &["shadow"], against: Against::Any, mean: 1.2, least: Some(1.0) },
-    Goal { own: WIDE, rays: &["bounce"], against: Against::Any, mean: 1.25, least: Some(1.05) },
-    Goal { own: WIDE, rays: &["random"], against: Against::Any, mean: 1.5, least: Some(1.1) },
-    Goal { own: GRIDS, rays: &["primary"], against: Against::Single, mean: 0.95, least: Some(0.7) },
-    Goal { own: GRIDS, rays: &["bounce"], against: Against::Single, mean: 0.8, least: Some(0.6) },
-    Goal { own: KD, rays: &["primary"], against: Against::Single, mean: 0.9, least: None },
-    Goal { own: KD, rays: &["bounce"], against: Against::Single, mean: 0.45, least: None },
+    Goal { own: WIDE, rays: &["primary"], against: Against::Packets, mean: Some(2.0), least: Some(1.4) },
+    Goal { own: WIDE, rays: &["primary"], against: Against::Promised, mean: None, least: None },
+    Goal { own: WIDE, rays: &["shadow"], against: Against::Packets, mean: Some(1.2), least: Some(1.0) },
+    Goal { own: WIDE, rays: &["shadow"], against: Against::Promised, mean: None, least: None },
+    Goal { own: WIDE, rays: &["bounce"], against: Against::Packets, mean: Some(1.25), least: Some(1.05) },
+    Goal { own: WIDE, rays: &["random"], against: Against::Packets, mean: Some(1.5), least: Some(1.1) },
+    Goal { own: GRIDS, rays: &["primary"], against: Against::Single, mean: Some(0.95), least: Some(0.7) },
+    Goal { own: GRIDS, rays: &["bounce"], against: Against::Single, mean: Some(0.8), least: Some(0.6) },
+    Goal { own: KD, rays: &["primary"], against: Against::Single, mean: Some(0.9), least: None },
+    Goal { own: KD, rays: &["bounce"], against: Against::Single, mean: Some(0.45), least: None },
     // What is built must trace as fast as what its build is compared with.
-    Goal { own: WIDE, rays: &["primary", "shadow", "bounce", "random"], against: Against::Medium, mean: 1.0, least: None },
+    Goal { own: WIDE, rays: &["primary", "shadow", "bounce", "random"], against: Against::Medium, mean: Some(1.0), least: None },
 ];
 
 /// A kernel, and Embree's test of the same kind.
@@ -124,7 +149,7 @@ pub(super) fn table(report: &Report, scenes: &[String]) -> String {
         builds(report, scenes),
         kernels(report, scenes),
         threads(report, scenes),
-        vec![memory(report, scenes)],
+        memory(report, scenes),
     ];
     table.extend(rows.iter().flatten().map(line));
     aligned(&table)
@@ -153,11 +178,6 @@ fn line(row: &Row) -> Vec<String> {
 /// The goals of speed, by kernel.
 fn speeds(report: &Report, scenes: &[String]) -> Vec<Row> {
     let row = |goal: &Goal, (kernel, test): (&str, &str)| {
-        let against = match goal.against {
-            Against::Any => "any",
-            Against::Single => "single",
-            Against::Medium => "medium",
-        };
         let ratio = |scene: &String| {
             let of_rays = goal.rays.iter();
             let of_rays =
@@ -167,8 +187,8 @@ fn speeds(report: &Report, scenes: &[String]) -> Vec<Row> {
         };
         Row {
             what: format!("{}, {}", goal.own.join(" / "), goal.rays.join(" + ")),
-            beside: format!("{kernel} : {test}, {against}"),
-            mean: Some(goal.mean),
+            beside: format!("{kernel} : {test}, {}", goal.against.name()),
+            mean: goal.mean,
             least: goal.least,
             ratios: scenes.iter().map(ratio).collect(),
         }
@@ -196,11 +216,7 @@ fn speed_ratio(
     })?;
     let key = PanelKey::of(own);
     let peer = fastest(report, |run| {
-        let params = &run.params;
-        run.kernel == test
-            && PanelKey::of(run) == key
-            && (goal.against != Against::Single || params.text("mode") == "single")
-            && (goal.against != Against::Medium || params.text("quality") == "medium")
+        run.kernel == test && PanelKey::of(run) == key && goal.against.allows(run)
     })?;
     // Other rays are no comparison.
     (own.ray_count == peer.ray_count).then(|| own.mrays_per_s.median / peer.mrays_per_s.median)
@@ -294,26 +310,33 @@ fn threads(report: &Report, scenes: &[String]) -> Vec<Row> {
         .collect()
 }
 
-/// Memory beside the peer that takes least.
-fn memory(report: &Report, scenes: &[String]) -> Row {
-    let ratio = |scene: &String| {
-        let runs = report.runs.iter();
-        let here: Vec<&Run> = runs
-            .filter(|run| run.scene == *scene && run.memory_bytes > 0)
-            .collect();
-        let own = |run: &&&Run| run.accel == FAST && run.kernel == "woop" && is_default(run);
-        let own = here.iter().find(own)?.memory_bytes;
-        let peers = here.iter().filter(|run| run.wrong_answers.is_some());
-        let leanest = peers.map(|run| run.memory_bytes).min()?;
-        Some(leanest as f64 / own as f64)
+/// Memory beside the peer that takes least, and beside that of those whose boxes are not compressed.
+fn memory(report: &Report, scenes: &[String]) -> Vec<Row> {
+    let row = |beside: &str, counts: fn(&Run) -> bool| {
+        let ratio = |scene: &String| {
+            let runs = report.runs.iter();
+            let here: Vec<&Run> = runs
+                .filter(|run| run.scene == *scene && run.memory_bytes > 0)
+                .collect();
+            let own = |run: &&&Run| run.accel == FAST && run.kernel == "woop" && is_default(run);
+            let own = here.iter().find(own)?.memory_bytes;
+            let peers = here.iter().filter(|run| run.wrong_answers.is_some());
+            let leanest = peers.filter(|run| counts(run)).map(|run| run.memory_bytes);
+            Some(leanest.min()? as f64 / own as f64)
+        };
+        Row {
+            what: format!("memory of {FAST}"),
+            beside: format!("{beside} : woop"),
+            mean: Some(1.0 / 1.2),
+            least: None,
+            ratios: scenes.iter().map(ratio).collect(),
+        }
     };
-    Row {
-        what: format!("memory of {FAST}"),
-        beside: "leanest peer : woop".to_owned(),
-        mean: Some(1.0 / 1.2),
-        least: None,
-        ratios: scenes.iter().map(ratio).collect(),
-    }
+    let uncompressed = |run: &Run| run.params.text("layout") != "cwbvh";
+    vec![
+        row("leanest peer", |_| true),
+        row("leanest uncompressed peer", uncompressed),
+    ]
 }
 
 fn geometric(values: &[f64]) -> f64 {

@@ -23,8 +23,8 @@ pub fn page(report: &Report) -> String {
     let text = [
         "# raylab beside its peers\n\n",
         "Ratios of median speeds over the same rays, samples of both interleaved: raylab's own over Embree's best. Above 1 \
-         raylab is faster. `any`: the faster of single rays and packets, medium and high build; `single`: single rays only; \
-         `medium`: medium build only. Rows that compare kernels or thread counts compare groups measured one after another.\n\n",
+         raylab is faster. `packets`: the faster of single rays and packets of sixteen, medium and high build; `promised`: also \
+         packets whose caller promises that they are coherent; `single`: single rays only; `medium`: medium build only. Rows that compare kernels or thread counts compare groups measured one after another.\n\n",
         &goals::table(report, &scenes(report)),
         &structures(report),
         &rays(report),

@@ -1,6 +1,6 @@
 //! Batches: the rays that a structure traces in the way that suits them, and where their answers go.
 
-use crate::geometry::lanes::{Isa, prefetch};
+use crate::geometry::lanes::{Isa, Lane, LaneMask, RayLanes, SIXTEEN, prefetch};
 use crate::geometry::{Hit, Ray};
 use crate::kernel::Kernel;
 
@@ -50,6 +50,25 @@ pub trait Rays<'a> {
 
     /// Whether its kernel is worth compiling every way of tracing a batch for: where not, rays go one by one.
     const WAYS: bool;
+
+    /// Sixteen rays as the kernel reads them.
+    type Sixteen;
+
+    /// Rays in lanes, of which `lead` is one; `None` where the kernel wants them one by one.
+    fn sixteen(
+        &self,
+        lead: &Ray,
+        lanes: &RayLanes<<Self::Isa as Isa>::Rays>,
+    ) -> Option<Self::Sixteen>;
+
+    /// Tests an item against those of sixteen rays whose bit is set, triangle by triangle; each has its visitor.
+    fn test_sixteen(
+        &self,
+        rays: &Self::Sixteen,
+        active: u32,
+        item: u32,
+        visitors: &mut [Self::Visitor],
+    );
 
     /// What a traversal of a packet reports to.
     type Packet<'p>: Visitor
@@ -122,6 +141,51 @@ impl<'a, T: Items, K: Kernel, I: Isa, A: Answer, const OCCLUSION: bool> Rays<'a>
     }
 
     const WAYS: bool = K::PACKETS && I::SIXTEEN;
+
+    type Sixteen = K::Prepared<1, I::Rays>;
+
+    #[inline(always)]
+    fn sixteen(&self, lead: &Ray, lanes: &RayLanes<I::Rays>) -> Option<Self::Sixteen> {
+        let alike = K::same_frame(lead, &lanes.lines.dir);
+        alike.then(
+            #[inline(always)]
+            || self.packed.kernel.prepare(lead, &lanes.lines),
+        )
+    }
+
+    #[inline(always)]
+    fn test_sixteen(
+        &self,
+        rays: &Self::Sixteen,
+        mut active: u32,
+        item: u32,
+        visitors: &mut [Self::Visitor],
+    ) {
+        T::each_triangle(
+            &self.packed.items,
+            item,
+            #[inline(always)]
+            |prim, triangle: &K::Packed<1>| {
+                let Some(hit) = self.packed.kernel.intersect(rays, triangle) else {
+                    return;
+                };
+                let mut met = hit.mask.bits() & active;
+                if met == 0 {
+                    return;
+                }
+                let bounds = K::t_error_bound(rays, triangle, hit.t);
+                while met != 0 {
+                    let lane = met.trailing_zeros() as usize % SIXTEEN;
+                    met &= met - 1;
+                    let taken = visitors[lane].offer(prim, &hit, lane, || bounds.get(lane));
+                    if OCCLUSION && taken {
+                        active &= !(1 << lane);
+                    }
+                }
+            },
+        );
+    }
+
     type Packet<'p>
         = Packet<'a, 'p, T, K, I>
     where

@@ -49,6 +49,13 @@ pub trait Items: Sized + Send + Sync + 'static {
         item: u32,
     ) -> bool;
 
+    /// Hands each triangle of an item to `take`.
+    fn each_triangle<K: Kernel>(
+        items: &[Self::Item<K>],
+        item: u32,
+        take: impl FnMut(u32, &K::Packed<1>),
+    );
+
     /// Tests an item against the rays of a packet.
     fn test_packet<K: Kernel, I: Isa>(packet: &mut Packet<'_, '_, Self, K, I>, item: u32);
 
@@ -73,6 +80,15 @@ pub struct Blocks;
 pub struct Block<P> {
     triangles: P,
     prims: [u32; LANES],
+}
+
+impl<P> Block<P> {
+    /// The lanes that hold a triangle of their own: those that are left over repeat the last.
+    #[inline(always)]
+    fn filled(&self) -> impl Iterator<Item = usize> {
+        let is_repeated = |lane: usize| lane > 0 && self.prims[lane - 1] == self.prims[lane];
+        (0..LANES).filter(move |lane| !is_repeated(*lane))
+    }
 }
 
 /// Appends whole blocks with these triangles, of which there is at least one, to `slots`.
@@ -115,6 +131,15 @@ impl Items for Singles {
         let taken = query.offer(prim, &hit, 0, bound);
         query.counter.test(prim, Some(hit.t), taken);
         OCCLUSION && taken
+    }
+
+    #[inline(always)]
+    fn each_triangle<K: Kernel>(
+        items: &[K::Packed<1>],
+        prim: u32,
+        mut take: impl FnMut(u32, &K::Packed<1>),
+    ) {
+        take(prim, &items[prim as usize]);
     }
 
     #[inline(always)]
@@ -175,8 +200,7 @@ impl Items for Blocks {
             let bound = |hit: &LaneHit<LANES, I::X8>, lane| {
                 K::t_error_bound(&prepared, &block.triangles, hit.t).get(lane)
             };
-            let is_repeated = |lane: usize| lane > 0 && block.prims[lane - 1] == block.prims[lane];
-            for lane in (0..LANES).filter(|lane| !is_repeated(*lane)) {
+            for lane in block.filled() {
                 let prim = block.prims[lane];
                 let hit = found
                     .as_ref()
@@ -213,6 +237,18 @@ impl Items for Blocks {
     }
 
     #[inline(always)]
+    fn each_triangle<K: Kernel>(
+        items: &[Self::Item<K>],
+        item: u32,
+        mut take: impl FnMut(u32, &K::Packed<1>),
+    ) {
+        let block = &items[item as usize];
+        for lane in block.filled() {
+            take(block.prims[lane], &K::lane(&block.triangles, lane));
+        }
+    }
+
+    #[inline(always)]
     fn test_packet<K: Kernel, I: Isa>(packet: &mut Packet<'_, '_, Self, K, I>, item: u32) {
         let packed = packet.packed;
         let block = &packed.items[item as usize];
@@ -220,11 +256,9 @@ impl Items for Blocks {
         if seen.met == 0 {
             return;
         }
-        // The lanes that are left over repeat the last triangle.
         let mut met = 0;
-        for lane in 0..LANES {
-            let is_repeated = lane > 0 && block.prims[lane - 1] == block.prims[lane];
-            met |= u32::from(!is_repeated) << lane;
+        for lane in block.filled() {
+            met |= 1 << lane;
         }
         packet.test_triangles(
             met & seen.met,

@@ -31,8 +31,11 @@ const GROUP: usize = SIXTEEN;
 /// Rays that are looked at together to make groups.
 const WINDOW: usize = 128;
 
+/// So many rays of a group at a node, in the mean, cost less together than alone.
+const MANY: u32 = 10;
+
 /// Fewer rays than this go alone.
-const FEW: u32 = 4;
+const FEW: u32 = 3;
 
 /// A number for each ray of a group.
 #[derive(Clone, Copy)]
@@ -51,11 +54,29 @@ struct Item {
     slot: u32,
 }
 
-/// The children that wait for a group, and where each ray enters them.
+/// How much of their way rays had in common.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Shared {
+    /// Nodes that were visited by a group.
+    nodes: u32,
+    /// The rays that visited them.
+    rays: u32,
+}
+
+impl Shared {
+    /// Whether that was more than a group costs, as measured for bounce rays.
+    pub fn pays(self) -> bool {
+        self.rays >= MANY * self.nodes
+    }
+}
+
+/// The children that wait for a group, and, where order counts, where each ray enters them.
 pub struct GroupStack {
     items: [Item; 8 * MAX_DEPTH],
     /// How many wait.
     waits: usize,
+    /// What was shared so far.
+    shared: Shared,
     entries: Vec<[Row; 8]>,
 }
 
@@ -70,6 +91,7 @@ impl Default for GroupStack {
         Self {
             items: [none; 8 * MAX_DEPTH],
             waits: 0,
+            shared: Shared::default(),
             entries: vec![[Row([0.0; GROUP]); 8]; MAX_DEPTH],
         }
     }
@@ -82,14 +104,14 @@ pub(super) fn trace<'a, R: Rays<'a>>(
     batch: &mut R,
     range: Range<usize>,
     stacks: &mut Stacks,
-) {
+) -> Shared {
     R::Isa::enter(Hybrid {
         tree,
         batch,
         range,
         stacks,
         lifetime: PhantomData,
-    });
+    })
 }
 
 /// Rays that are traced in groups, in a function of its own; see [`super::super::packets`].
@@ -102,12 +124,13 @@ struct Hybrid<'t, 'a, R: Rays<'a>> {
 }
 
 impl<'a, R: Rays<'a>> Task for Hybrid<'_, 'a, R> {
-    type Out = ();
+    type Out = Shared;
 
     #[inline(always)]
-    fn run<I: Isa>(self) {
+    fn run<I: Isa>(self) -> Shared {
         let (tree, batch) = (self.tree, self.batch);
         let (stack, waiting) = self.stacks.with_group();
+        waiting.shared = Shared::default();
         let mut visitors = Vec::with_capacity(GROUP);
         while visitors.len() < GROUP {
             visitors.push(batch.begin(self.range.start));
@@ -124,6 +147,7 @@ impl<'a, R: Rays<'a>> Task for Hybrid<'_, 'a, R> {
                 }
             }
         }
+        waiting.shared
     }
 }
 
@@ -194,6 +218,8 @@ struct Group<'v, L, V> {
     visitors: &'v mut [V],
     /// What begins beyond these changes nothing.
     limits: [f32; GROUP],
+    /// Rays whose answers can still change, a bit each.
+    open: u32,
 }
 
 /// Sixteen numbers in lanes.
@@ -221,21 +247,35 @@ fn together<'a, R: Rays<'a>>(
     for (visitor, index) in visitors.iter_mut().zip(indices) {
         batch.begin_again(*index as usize, visitor);
     }
+    let all = (1_u32 << indices.len()) - 1;
     let mut limits = [0.0; GROUP];
     lanes.t_max.write(&mut limits);
+    let sixteen = batch.sixteen(ray(0), &lanes);
     let mut group = Group {
         slabs,
         plain,
         visitors,
         limits,
+        open: all,
     };
-    let all = (1_u32 << indices.len()) - 1;
     let (mut next, mut level, mut together) = (tree.root, 0, all & plain);
     let mut apart = all & !plain;
     // Those that are not plain go first, and once.
     while together | apart != 0 {
         if apart == 0 && !next.is_leaf() && together.count_ones() >= FEW && level < MAX_DEPTH {
             waiting.push(&tree.nodes[next.0 as usize], level, together, &group);
+        } else if let Some(sixteen) = &sixteen
+            && apart == 0
+            && pays_together(tree, next, together)
+        {
+            for block in next.blocks() {
+                batch.test_sixteen(sixteen, together, block, group.visitors);
+            }
+            let mut rest = together;
+            while rest != 0 {
+                group.update(rest.trailing_zeros() as usize % GROUP);
+                rest &= rest - 1;
+            }
         } else {
             let active = if apart == 0 { together } else { apart };
             R::Isa::enter(Apart {
@@ -254,6 +294,23 @@ fn together<'a, R: Rays<'a>>(
     }
     for (lane, index) in indices.iter().enumerate() {
         batch.finish(*index as usize, &group.visitors[lane & (GROUP - 1)]);
+    }
+}
+
+/// Whether to test the triangles of a leaf one by one, each against sixteen rays, costs less than to test the `active` rays
+/// one by one, each against blocks of eight triangles.
+#[inline(always)]
+fn pays_together(tree: &BvhWide, next: Child, active: u32) -> bool {
+    next.is_leaf() && tree.references(next) < active.count_ones() * next.blocks().len() as u32
+}
+
+impl<L, V: Visitor> Group<'_, L, V> {
+    /// Takes over the limit of the ray in a lane.
+    #[inline(always)]
+    fn update(&mut self, lane: usize) {
+        let limit = self.visitors[lane].t_limit();
+        self.limits[lane] = limit;
+        self.open &= !(u32::from(limit == f32::NEG_INFINITY) << lane);
     }
 }
 
@@ -288,7 +345,7 @@ impl<'r, L: Lane<1>, V: Visitor, F: Fn(usize) -> &'r Ray> Task for Apart<'_, '_,
             let visitor = &mut group.visitors[lane];
             let mut walk = Walk::<I>::from(slabs, self.next);
             while walk.step(tree, self.stack, visitor) {}
-            group.limits[lane] = visitor.t_limit();
+            group.update(lane);
         }
     }
 }
@@ -303,22 +360,25 @@ impl GroupStack {
         active: u32,
         group: &Group<L, V>,
     ) {
+        self.shared.nodes += 1;
+        self.shared.rays += active.count_ones();
         let limits = lanes_of(&group.limits);
         let lead = active.trailing_zeros() as usize & (GROUP - 1);
         let first = self.waits;
         for (lane, child) in node.children.iter().enumerate() {
             let (entry, exit) = group.slabs.clip(&node.boxes, lane, limits);
             let met = entry.le(exit).bits() & active;
-            let entries = &mut self.entries[level][lane].0;
-            entry.write(entries);
-            let item = Item {
+            let mut item = Item {
                 child: Child(*child),
                 met,
-                key: entries[lead],
+                key: 0.0,
                 slot: (level * 8 + lane) as u32,
             };
             let mut place = self.waits;
             if V::ORDERED && met != 0 {
+                let entries = &mut self.entries[level][lane].0;
+                entry.write(entries);
+                item.key = entries[lead];
                 while place > first && self.items[place - 1].key < item.key {
                     self.items[place] = self.items[place - 1];
                     place -= 1;
@@ -338,8 +398,12 @@ impl GroupStack {
             self.waits -= 1;
             let item = self.items[self.waits];
             let (level, lane) = (item.slot as usize / 8, item.slot as usize % 8);
-            let entries = lanes_of::<L>(&self.entries[level % MAX_DEPTH][lane].0);
-            let active = item.met & entries.le(limits).bits();
+            let mut active = item.met & group.open;
+            // Where any hit will do a limit does not move until the ray is done.
+            if V::ORDERED {
+                let entries = lanes_of::<L>(&self.entries[level % MAX_DEPTH][lane].0);
+                active &= entries.le(limits).bits();
+            }
             if active != 0 {
                 return (item.child, active, level + 1);
             }

@@ -40,7 +40,7 @@ mod way;
 
 use stack::Stacks;
 use walk::Walk;
-use way::Way;
+use way::{Plan, Way};
 
 pub(super) const ENTRY: AcceleratorEntry = AcceleratorEntry {
     name: "bvh-wide",
@@ -98,6 +98,9 @@ impl Child {
         }
     }
 }
+
+/// Rays that are tried together where it is not known whether that pays.
+const TRIED: usize = 128;
 
 /// Where the numbers of leaves begin.
 const LEAVES: u64 = 1 << 32;
@@ -189,16 +192,25 @@ impl Structure for BvhWide {
         if !R::WAYS {
             return packets::trace(self, batch, stacks, false);
         }
-        match self
-            .way
-            .unwrap_or_else(|| way::choose(self, batch.rays(), !R::Visitor::ORDERED))
-        {
-            Way::Interleaved => interleaved::trace(self, batch, stacks),
-            Way::Hybrid => {
-                let all = 0..batch.rays().len();
+        let all = 0..batch.rays().len();
+        let plan = match self.way {
+            Some(way) => Plan::Known(way),
+            None => way::choose(self, batch.rays(), !R::Visitor::ORDERED),
+        };
+        match plan {
+            Plan::Known(Way::Interleaved) => interleaved::trace(self, batch, stacks),
+            Plan::Known(Way::Hybrid) => {
                 hybrid::trace(self, batch, all, stacks);
             }
-            way => packets::trace(self, batch, stacks, way == Way::Packets),
+            Plan::Known(way) => packets::trace(self, batch, stacks, way == Way::Packets),
+            Plan::Tried => {
+                let (tried, rest) = (0..TRIED.min(all.end), TRIED.min(all.end)..all.end);
+                if hybrid::trace(self, batch, tried, stacks).pays() {
+                    hybrid::trace(self, batch, rest, stacks);
+                } else {
+                    packets::alone(self, batch, rest, stacks);
+                }
+            }
         }
     }
 

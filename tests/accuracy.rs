@@ -4,9 +4,14 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use raylab::lab::{AccuracyEvent, AccuracyPlan, Budget, Control, Plan, accuracy_from};
-use raylab::report::{Bundle, Provenance, SCHEMA_JSON};
+use raylab::report::{Bundle, Provenance};
 use raylab::{accel, kernel};
 use serde_json::Value;
+
+use schema::faults;
+
+#[path = "fixture/schema.rs"]
+mod schema;
 
 fn raylab(dir: &Path, args: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_raylab"))
@@ -14,15 +19,6 @@ fn raylab(dir: &Path, args: &[&str]) -> Output {
         .current_dir(dir)
         .output()
         .expect("the program starts")
-}
-
-fn faults(report: &Value) -> Vec<String> {
-    let schema: Value = serde_json::from_str(SCHEMA_JSON).unwrap();
-    let validator = jsonschema::draft202012::new(&schema).unwrap();
-    let errors = validator.iter_errors(report);
-    errors
-        .map(|error| format!("{}: {error}", error.instance_path()))
-        .collect()
 }
 
 fn read(path: &Path) -> Value {

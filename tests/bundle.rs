@@ -4,43 +4,20 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use raylab::accel;
-use raylab::kernel;
-use raylab::lab::{Budget, Control, Event, NRule, Plan, sweep_from};
+use raylab::lab::{Control, Event, sweep_from};
 use raylab::report::{
-    Accuracy, Bundle, ErrorSpread, Fallbacks, Places, Provenance, Rate, Report, Run, SCHEMA_JSON,
-    SelfHits, StartRule,
+    Accuracy, Bundle, ErrorSpread, Fallbacks, Places, Provenance, Rate, Report, Run, SelfHits,
+    StartRule,
 };
 use serde_json::{Value, json};
 
-/// A plan that takes a second; no run of it is ended by its time.
-fn plan() -> Plan {
-    Plan {
-        scenes: vec!["teapot:3".to_owned()],
-        accels: accel::ACCELERATORS
-            .iter()
-            .filter(|entry| entry.peer.is_none() && !entry.control)
-            .map(|entry| accel::parse(entry.name).unwrap())
-            .collect(),
-        n: vec![NRule::Fixed(4), NRule::Auto],
-        kernels: vec![
-            kernel::parse("woop").unwrap(),
-            kernel::parse("sheet-unsigned:eps=0.001").unwrap(),
-        ],
-        rays: ["bounce", "random"].map(str::to_owned).to_vec(),
-        threads: vec![1],
-        ray_count: 700,
-        seed: 3,
-        budget: Budget {
-            sample_seconds: 1e-4,
-            min_samples: 3,
-            max_samples: 4,
-            relative_half_width: 0.2,
-            run_seconds: 5.0,
-            checked_rays: 200,
-        },
-        memory_limit: 1 << 28,
-    }
-}
+use plan::plan;
+use schema::faults;
+
+#[path = "fixture/plan.rs"]
+mod plan;
+#[path = "fixture/schema.rs"]
+mod schema;
 
 /// Sweeps into the bundle until `stop_after` samples were taken, as a program would that is then killed: nothing is
 /// written after the last event. Whether the plan is complete.
@@ -72,16 +49,6 @@ fn measured(dir: &Path) -> Bundle {
     assert!(sweep_into(&mut bundle, usize::MAX));
     bundle.finish().unwrap();
     bundle
-}
-
-/// What is wrong with a report by the schema; nothing where it fits.
-fn faults(report: &Value) -> Vec<String> {
-    let schema: Value = serde_json::from_str(SCHEMA_JSON).unwrap();
-    let validator = jsonschema::draft202012::new(&schema).unwrap();
-    let errors = validator.iter_errors(report);
-    errors
-        .map(|error| format!("{}: {error}", error.instance_path()))
-        .collect()
 }
 
 fn json_of(dir: &Path) -> Value {

@@ -3,10 +3,16 @@
 use std::process::{Command, Output};
 
 use raylab::accel::{self, AcceleratorEntry};
-use raylab::kernel;
-use raylab::lab::{Budget, Control, Event, Plan, sweep};
-use raylab::report::{Provenance, Report, Run, SCHEMA_JSON, peers_page, series};
+use raylab::lab::{Control, Event, Plan, sweep};
+use raylab::report::{Provenance, Report, Run, peers_page, series};
 use serde_json::{Value, json};
+
+use schema::faults;
+
+#[path = "fixture/plan.rs"]
+mod plan;
+#[path = "fixture/schema.rs"]
+mod schema;
 
 fn raylab(args: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_raylab"))
@@ -26,30 +32,17 @@ fn here() -> Vec<&'static AcceleratorEntry> {
     here
 }
 
+/// Peers beside a structure of ours.
 fn plan() -> Plan {
     let peers = here().into_iter().map(|entry| entry.name);
     Plan {
-        scenes: vec!["teapot:4".to_owned()],
         accels: ["bvh"]
             .into_iter()
             .chain(peers)
             .map(|a| accel::parse(a).unwrap())
             .collect(),
-        kernels: ["woop", "sheet-unsigned:eps=0.001"]
-            .map(|k| kernel::parse(k).unwrap())
-            .to_vec(),
         rays: ["bounce", "shadow"].map(str::to_owned).to_vec(),
-        threads: vec![1],
-        ray_count: 900,
-        budget: Budget {
-            sample_seconds: 1e-4,
-            min_samples: 3,
-            max_samples: 4,
-            relative_half_width: 0.2,
-            run_seconds: 5.0,
-            checked_rays: 300,
-        },
-        ..Plan::default()
+        ..plan::plan()
     }
 }
 
@@ -86,7 +79,7 @@ fn a_peer_reports_wrong_answers_and_no_work_and_names_what_decided_its_hits() {
         assert_eq!(run.per_ray.is_none(), is_peer, "{run:?}");
         assert_eq!(run.wrong_answers.is_some(), is_peer, "{run:?}");
         // A set of bounced rays is as large as the picture of the scene.
-        assert_eq!(run.checked_rays, run.ray_count.min(300));
+        assert_eq!(run.checked_rays, run.ray_count.min(200));
         assert!(!run.is_broken() && run.checksum.hits > 0 && run.memory_bytes > 0);
         // On the teapot even a peer is seldom wrong.
         assert!(run.wrong_answers.is_none_or(|wrong| wrong < 15), "{run:?}");
@@ -106,14 +99,7 @@ fn a_peer_reports_wrong_answers_and_no_work_and_names_what_decided_its_hits() {
             "{panel}"
         );
     }
-    let schema: Value = serde_json::from_str(SCHEMA_JSON).unwrap();
-    let validator = jsonschema::draft202012::new(&schema).unwrap();
-    let value = json!(report);
-    let faults: Vec<String> = validator
-        .iter_errors(&value)
-        .map(|e| e.to_string())
-        .collect();
-    assert_eq!(faults, [""; 0]);
+    assert_eq!(faults(&json!(report)), [""; 0]);
     let page = peers_page(&report);
     let of_obvhs = |run: &&Run| run.accel == "obvhs" && run.kernel == "woop";
     let checked = report

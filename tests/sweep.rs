@@ -8,30 +8,18 @@ use raylab::lab::{
     Budget, Control, Done, Event, NRule, Plan, RunRecord, StopReason, sweep, sweep_from,
 };
 
-/// A plan that takes a second; no run of it is ended by its time.
+#[path = "fixture/plan.rs"]
+mod plan;
+
+/// Two scenes and three resolutions.
 fn plan() -> Plan {
     Plan {
         scenes: vec!["teapot:4".to_owned(), "soup:300".to_owned()],
-        accels: accel::ACCELERATORS
-            .iter()
-            .filter(|entry| entry.peer.is_none() && !entry.control)
-            .map(|entry| accel::parse(entry.name).unwrap())
-            .collect(),
         n: vec![NRule::Fixed(1), NRule::Fixed(8), NRule::Auto],
         kernels: vec![kernel::parse("woop").unwrap()],
         rays: ["primary", "shadow"].map(str::to_owned).to_vec(),
-        threads: vec![1],
         ray_count: 1200,
-        seed: 3,
-        budget: Budget {
-            sample_seconds: 1e-4,
-            min_samples: 3,
-            max_samples: 4,
-            relative_half_width: 0.2,
-            run_seconds: 5.0,
-            checked_rays: 200,
-        },
-        memory_limit: 1 << 28,
+        ..plan::plan()
     }
 }
 

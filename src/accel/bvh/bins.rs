@@ -11,23 +11,24 @@
 
 use glam::{BVec4A, Vec4, Vec4Swizzles};
 
-use super::reference::{Bounds, Reference};
+use crate::geometry::lanes::Lane;
+
+use super::reference::{Bounds, Hull, Reference};
 
 /// Most bins an axis. More gains less than 1 % of SAH cost (Wald 2007, figure 5).
 const BINS: usize = 16;
 
-/// From so many references on a second histogram pays.
-const PAIRED: usize = 128;
+/// Added to a number from 0 to below 16, it brings the whole part of that into the highest four bits of the mantissa.
+const WHOLE: f32 = 16.0;
 
-/// Adding it to a number from 0 to 2²² rounds that to a whole number in the lowest bits.
-const ROUND: f32 = 8_388_608.0;
+/// Bits of the mantissa below those four.
+const PART: u32 = 19;
 
 /// Which bins references fall into.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Grid {
     start: Vec4,
     scale: Vec4,
-    last: Vec4,
     bins: usize,
 }
 
@@ -42,7 +43,6 @@ impl Grid {
         Self {
             start: centroids.min,
             scale,
-            last: Vec4::splat((bins - 1) as f32),
             bins,
         }
     }
@@ -50,11 +50,9 @@ impl Grid {
     /// The bins of a centroid along x, y and z: monotone in each.
     #[inline(always)]
     pub fn of(&self, centroid: Vec4) -> [usize; 3] {
-        let [x, y, z, _] = self
-            .place(centroid)
-            .to_array()
-            .map(|p| p.to_bits() as usize % BINS);
-        [x, y, z]
+        let [x, y, z, _] = self.place(centroid).to_array();
+        let whole = |place: f32| (place.to_bits() >> PART) as usize % BINS;
+        [whole(x), whole(y), whole(z)]
     }
 
     /// In all lanes whether a centroid falls into `bin` of `AXIS` or beyond it.
@@ -66,14 +64,14 @@ impl Grid {
             1 => place.yyyy(),
             _ => place.zzzz(),
         };
-        along.cmpge(Vec4::splat(bin as f32 + ROUND))
+        along.cmpge(Vec4::splat(bin as f32 + WHOLE))
     }
 
-    /// The bins of a centroid as whole numbers above [`ROUND`].
+    /// Where a centroid lies among the bins, above [`WHOLE`]. None lies below the first or reaches beyond the last: the
+    /// least centroid is where the first begins, and the last is wider by more than what rounding adds.
     #[inline(always)]
     fn place(&self, centroid: Vec4) -> Vec4 {
-        let place = (centroid - self.start) * self.scale - 0.5;
-        place.max(Vec4::ZERO).min(self.last) + ROUND
+        (centroid - self.start) * self.scale + WHOLE
     }
 }
 
@@ -93,47 +91,33 @@ pub(super) struct Split {
 /// How many references with what boxes fall into each bin of each axis.
 #[derive(Debug, Clone)]
 pub(super) struct Histogram {
-    bounds: [[Bounds; BINS]; 3],
+    boxes: [[Hull; BINS]; 3],
     counts: [[u32; BINS]; 3],
 }
 
 impl Histogram {
     pub const EMPTY: Self = Self {
-        bounds: [[Bounds::EMPTY; BINS]; 3],
+        boxes: [[Hull::EMPTY; BINS]; 3],
         counts: [[0; BINS]; 3],
     };
 
     /// The histogram of `references`.
-    #[inline]
-    pub fn of(references: &[Reference], grid: &Grid) -> Self {
+    #[inline(always)]
+    pub fn of<L: Lane<8>>(references: &[Reference], grid: &Grid) -> Self {
         let mut histogram = Self::EMPTY;
-        if references.len() < PAIRED {
-            for reference in references {
-                histogram.add(reference, grid);
-            }
-            return histogram;
+        for reference in references {
+            histogram.add::<L>(reference, grid);
         }
-        // Neighbours often fall into the same bins. Every other one goes to a second histogram, so that it need not
-        // wait until its neighbour is written.
-        let mut second = Self::EMPTY;
-        let mut pairs = references.chunks_exact(2);
-        for pair in &mut pairs {
-            histogram.add(&pair[0], grid);
-            second.add(&pair[1], grid);
-        }
-        for reference in pairs.remainder() {
-            histogram.add(reference, grid);
-        }
-        histogram.join(&second);
         histogram
     }
 
     #[inline(always)]
-    fn add(&mut self, reference: &Reference, grid: &Grid) {
+    fn add<L: Lane<8>>(&mut self, reference: &Reference, grid: &Grid) {
         let bins = grid.of(reference.centroid());
+        let lanes = L::load(&reference.hull().0);
         for (axis, bin) in bins.into_iter().enumerate() {
-            let bounds = &mut self.bounds[axis][bin];
-            *bounds = bounds.union(reference.bounds());
+            let bin = bin % BINS;
+            self.boxes[axis][bin].grow(lanes);
             self.counts[axis][bin] += 1;
         }
     }
@@ -142,8 +126,8 @@ impl Histogram {
     pub fn join(&mut self, other: &Self) {
         for axis in 0..3 {
             for bin in 0..BINS {
-                let mine = &mut self.bounds[axis][bin];
-                *mine = mine.union(other.bounds[axis][bin]);
+                let mine = &mut self.boxes[axis][bin];
+                *mine = mine.union(&other.boxes[axis][bin]);
                 self.counts[axis][bin] += other.counts[axis][bin];
             }
         }
@@ -160,12 +144,12 @@ impl Histogram {
         let scale = bounds.scale();
         let mut best = (f32::INFINITY, 0, 0);
         for axis in 0..3 {
-            let (boxes, counts) = (&self.bounds[axis], &self.counts[axis]);
+            let (boxes, counts) = (&self.boxes[axis], &self.counts[axis]);
             // Costs of the second side, swept from the last bin; then of the first, from bin 0.
             let mut second = [0.0; BINS];
-            let (mut side, mut count) = (Bounds::EMPTY, 0);
+            let (mut side, mut count) = (Hull::EMPTY, 0);
             for bin in (1..grid.bins).rev() {
-                side = side.union(boxes[bin]);
+                side = side.union(&boxes[bin]);
                 count += counts[bin];
                 // A side without references must not win.
                 second[bin] = if count == 0 {
@@ -174,20 +158,24 @@ impl Histogram {
                     side.half_area(scale) * count as f32
                 };
             }
-            let (mut side, mut count) = (Bounds::EMPTY, 0);
+            let (mut side, mut count) = (Hull::EMPTY, 0);
             for bin in 1..grid.bins {
-                side = side.union(boxes[bin - 1]);
+                side = side.union(&boxes[bin - 1]);
                 count += counts[bin - 1];
+                // NaN, which does not win, where the first side is empty.
                 let cost = side.half_area(scale) * count as f32 + second[bin];
-                if cost < best.0 && count > 0 {
+                if cost < best.0 {
                     best = (cost, axis, bin);
                 }
             }
         }
         let (cost, axis, bin) = best;
         (cost < f32::INFINITY).then(|| {
-            let side = |bins: &[Bounds]| bins.iter().fold(Bounds::EMPTY, |s, b| s.union(*b));
-            let (first, second) = self.bounds[axis].split_at(bin);
+            let side = |bins: &[Hull]| {
+                let union = bins.iter().fold(Hull::EMPTY, |side, bin| side.union(bin));
+                union.bounds()
+            };
+            let (first, second) = self.boxes[axis].split_at(bin);
             Split {
                 axis,
                 bin,

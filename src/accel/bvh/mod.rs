@@ -31,6 +31,7 @@ mod chop;
 mod cover;
 mod exhibit;
 mod leaves;
+mod loops;
 mod partition;
 mod reference;
 mod reinsert;
@@ -40,7 +41,7 @@ mod tree;
 mod validate;
 
 pub(super) use exhibit::NAIVE_SLAB;
-pub(super) use tree::{BinaryTree, Build, Node, binary};
+pub(super) use tree::{BinaryTree, Build, Node, binary, grouped};
 
 pub(super) const ENTRY: AcceleratorEntry = AcceleratorEntry {
     name: "bvh",
@@ -225,9 +226,10 @@ mod tests {
         let mesh = mesh(&mixed(64_000, 10));
         let build = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-            pool.build()
-                .expect("a pool")
-                .install(|| BUILDS.map(|build| binary(&mesh, build, 4)))
+            pool.build().expect("a pool").install(|| {
+                let grouped = grouped(&mesh, Build::Binned);
+                (BUILDS.map(|build| binary(&mesh, build, 4)), grouped)
+            })
         };
         assert_eq!(build(1), build(5));
     }
@@ -263,6 +265,7 @@ mod tests {
             let depth = validate::depth(&tree.nodes);
             assert!(build != Build::Binned || depth > 60, "the mesh is no trap");
         }
+        validate::validate(&grouped(&mesh, Build::Binned), &mesh).expect("valid");
     }
 
     #[test]

@@ -14,6 +14,7 @@ use glam::{BVec4A, Vec4};
 use rayon::prelude::*;
 
 use super::bins::{Grid, Histogram, Split};
+use super::loops::{Loops, Partition};
 use super::reference::{Bounds, Extent, Reference};
 
 /// Above this many references, threads share the work on a single node, in chunks of [`CHUNK`].
@@ -84,16 +85,16 @@ impl<'a> Task<'a> {
     }
 
     /// The best object split; `None` where no bins separate the centroids.
-    pub fn choose(&self) -> Option<Choice> {
+    pub fn choose(&self, loops: Loops) -> Option<Choice> {
         let references = self.references();
         let grid = Grid::new(&self.extent.centroids, references.len());
         let mut parts = Vec::new();
         let histogram = if references.len() < SHARED {
-            Histogram::of(references, &grid)
+            (loops.histogram)(references, &grid)
         } else {
             references
                 .par_chunks(CHUNK)
-                .map(|chunk| Histogram::of(chunk, &grid))
+                .map(|chunk| (loops.histogram)(chunk, &grid))
                 .collect_into_vec(&mut parts);
             let mut joined = Histogram::EMPTY;
             for part in &parts {
@@ -106,14 +107,19 @@ impl<'a> Task<'a> {
     }
 
     /// Both sides of an object split.
-    pub fn divided(self, choice: &Choice) -> [Self; 2] {
+    pub fn divided(self, loops: Loops, choice: &Choice) -> [Self; 2] {
         let Choice { split, grid, parts } = choice;
         let (references, to) = (&self.references[self.filled.clone()], &mut *self.spare);
-        let centroids = match (parts.as_slice(), split.axis) {
-            ([], 0) => partition::<0>(references, to, grid, split.bin),
-            ([], 1) => partition::<1>(references, to, grid, split.bin),
-            ([], _) => partition::<2>(references, to, grid, split.bin),
-            (parts, _) => partition_shared(references, to, grid, split, parts),
+        let centroids = if parts.is_empty() {
+            (loops.partition)(Partition {
+                references,
+                to,
+                grid,
+                axis: split.axis,
+                bin: split.bin,
+            })
+        } else {
+            partition_shared(references, to, grid, split, parts)
         };
         let extents = [0, 1].map(|side| Extent {
             bounds: split.sides[side],
@@ -182,12 +188,24 @@ impl<'a> Task<'a> {
 }
 
 /// Moves `references` to the begin and the end of `to`, and returns the boxes of the centroids of both sides.
-fn partition<const AXIS: usize>(
-    references: &[Reference],
-    to: &mut [Reference],
-    grid: &Grid,
-    bin: usize,
-) -> [Bounds; 2] {
+#[inline(always)]
+pub(super) fn partition(task: Partition) -> [Bounds; 2] {
+    match task.axis {
+        0 => partition_along::<0>(task),
+        1 => partition_along::<1>(task),
+        _ => partition_along::<2>(task),
+    }
+}
+
+#[inline(always)]
+fn partition_along<const AXIS: usize>(task: Partition) -> [Bounds; 2] {
+    let Partition {
+        references,
+        to,
+        grid,
+        bin,
+        ..
+    } = task;
     let (mut first, mut second) = (0, to.len());
     let mut centroids = Centroids::EMPTY;
     for reference in references {

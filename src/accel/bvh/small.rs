@@ -2,9 +2,14 @@
 //!
 //! References are sorted once along each axis; a split keeps the order on both sides, so going down costs no sorting.
 //! Of three references each can be the one that is split off.
+//!
+//! The axes are swept together, so that areas of three boxes are computed at once and the three chains of minima run side by
+//! side; one after the other they took half as long again.
+
+use glam::{Mat4, Vec4};
 
 use super::Node;
-use super::binned::Place;
+use super::binned::{Row, may_choose};
 use super::reference::{Bounds, Extent, Reference};
 
 /// Most references of a small subtree: one bit each in a `u32`.
@@ -13,8 +18,16 @@ pub(super) const MOST: usize = 32;
 /// Positions of references in their order along an axis.
 type Order = [u8; MOST];
 
-/// Fills `node` and everything below it; there are at most [`MOST`] references.
-pub(super) fn build(node: &mut Node, references: &[Reference], extent: &Extent, place: Place) {
+/// The root of a subtree over `references`, at most [`MOST`], at `depth`, after everything below it went to `row`.
+pub(super) fn build(
+    references: &[Reference],
+    extent: &Extent,
+    depth: usize,
+    row: &mut Row,
+) -> Node {
+    if references.len() <= row.most() {
+        return row.leaf(extent.bounds.aabb(), references.iter().map(Reference::prim));
+    }
     let mut boxes = [Bounds::EMPTY; MOST];
     for (bounds, reference) in boxes.iter_mut().zip(references) {
         *bounds = reference.bounds();
@@ -24,8 +37,7 @@ pub(super) fn build(node: &mut Node, references: &[Reference], extent: &Extent, 
         boxes,
         orders: orders(references, extent),
     };
-    let count = references.len();
-    sorted.split([0, count], &extent.bounds, node, place);
+    sorted.split([0, references.len()], &extent.bounds, depth, row)
 }
 
 /// The references sorted by their centroids along each axis.
@@ -49,6 +61,33 @@ fn orders(references: &[Reference], extent: &Extent) -> [Order; 3] {
     })
 }
 
+/// Growing boxes, one for each axis along which there is a sweep.
+struct Sides([Bounds; 3]);
+
+impl Sides {
+    const EMPTY: Self = Self([Bounds::EMPTY; 3]);
+
+    #[inline(always)]
+    fn grow(&mut self, [x, y, z]: [&Bounds; 3]) {
+        let Self([a, b, c]) = self;
+        (*a, *b, *c) = (a.union(*x), b.union(*y), c.union(*z));
+    }
+
+    /// As [`Bounds::half_area`], of those along x, y and z; none may be empty.
+    #[inline(always)]
+    fn half_areas(&self, scale: f32) -> Vec4 {
+        let Self([x, y, z]) = self;
+        // Edges along one axis together instead of those of one box.
+        let edges = Mat4::from_cols(x.extent(), y.extent(), z.extent(), Vec4::ZERO).transpose();
+        let (x, y, z) = (
+            edges.x_axis * scale,
+            edges.y_axis * scale,
+            edges.z_axis * scale,
+        );
+        x * (y + z) + y * z
+    }
+}
+
 /// The references of a small subtree.
 struct Sorted<'a> {
     references: &'a [Reference],
@@ -58,32 +97,35 @@ struct Sorted<'a> {
 }
 
 impl Sorted<'_> {
-    /// Fills `node` and what is below it with the references whose positions are in `range` of the orders.
-    fn split(&mut self, [start, end]: [usize; 2], bounds: &Bounds, node: &mut Node, place: Place) {
+    /// The root of a subtree, at `depth`, over the references whose positions are in `range` of the orders.
+    fn split(
+        &mut self,
+        [start, end]: [usize; 2],
+        bounds: &Bounds,
+        depth: usize,
+        row: &mut Row,
+    ) -> Node {
         let count = end - start;
-        if count == 1 {
-            place.prims[0] = self.references[self.at(0, start)].prim();
-            *node = Node::leaf(bounds.aabb(), place.first_reference, 1);
-            return;
+        if count <= row.most() {
+            let prims = (start..end).map(|i| self.references[self.at(0, i)].prim());
+            return row.leaf(bounds.aabb(), prims);
         }
-        *node = Node::interior(bounds.aabb(), place.first_node);
         let middle = start
-            + if !place.may_choose(count) {
+            + if !may_choose(depth, count) {
                 count / 2
             } else if count <= 3 {
                 self.split_one_off(start, count)
             } else {
                 self.split_best([start, end], bounds.scale())
             };
-        let sides = [[start, middle], [middle, end]].map(|[start, end]| {
-            (start..end).fold(Bounds::EMPTY, |side, i| {
-                side.union(self.boxes[self.at(0, i)])
+        row.interior(bounds.aabb(), |row| {
+            [[start, middle], [middle, end]].map(|[start, end]| {
+                let bounds = (start..end).fold(Bounds::EMPTY, |side, i| {
+                    side.union(self.boxes[self.at(0, i)])
+                });
+                self.split([start, end], &bounds, depth + 1, row)
             })
-        });
-        let (children, [a_place, b_place]) = place.split(middle - start);
-        let (a, b) = children.split_at_mut(1);
-        self.split([start, middle], &sides[0], &mut a[0], a_place);
-        self.split([middle, end], &sides[1], &mut b[0], b_place);
+        })
     }
 
     /// Which reference is the `i`-th along `axis`.
@@ -111,33 +153,47 @@ impl Sorted<'_> {
     /// most even split wins.
     fn split_best(&mut self, [start, end]: [usize; 2], scale: f32) -> usize {
         let count = end - start;
-        // The cost, how uneven the split is, its axis and its size in one number, so that the least is found without
-        // a branch: numbers that are not negative are ordered as their bits are.
-        let mut best = u64::MAX;
-        for axis in 0..3 {
-            let mut second = [0.0; MOST];
-            let mut side = Bounds::EMPTY;
-            for i in (1..count).rev() {
-                side = side.union(self.boxes[self.at(axis, start + i)]);
-                second[i % MOST] = side.half_area(scale) * (count - i) as f32;
-            }
-            side = Bounds::EMPTY;
-            for i in 1..count {
-                side = side.union(self.boxes[self.at(axis, start + i - 1)]);
-                let cost = side.half_area(scale) * i as f32 + second[i % MOST];
-                let uneven = i.abs_diff(count - i);
-                let key = u64::from(cost.to_bits()) << 32 | (uneven << 16 | axis << 8 | i) as u64;
-                best = best.min(key);
+        let mut second = [Vec4::ZERO; MOST];
+        let mut sides = Sides::EMPTY;
+        for i in (1..count).rev() {
+            sides.grow(self.boxes_at(start + i));
+            second[i % MOST] = sides.half_areas(scale) * (count - i) as f32;
+        }
+        let mut sides = Sides::EMPTY;
+        let (mut least, mut uneven, mut first) = (Vec4::INFINITY, Vec4::INFINITY, Vec4::ZERO);
+        for i in 1..count {
+            sides.grow(self.boxes_at(start + i - 1));
+            let cost = sides.half_areas(scale) * i as f32 + second[i % MOST];
+            let is_uneven = Vec4::splat(i.abs_diff(count - i) as f32);
+            let wins = cost.cmplt(least) | (cost.cmpeq(least) & is_uneven.cmplt(uneven));
+            least = Vec4::select(wins, cost, least);
+            uneven = Vec4::select(wins, is_uneven, uneven);
+            first = Vec4::select(wins, Vec4::splat(i as f32), first);
+        }
+        let mut axis = 0;
+        for other in 1..3 {
+            let is_less = least[other] < least[axis];
+            if is_less || (least[other] == least[axis] && uneven[other] < uneven[axis]) {
+                axis = other;
             }
         }
-        let (axis, first) = ((best >> 8) as usize % 256, best as usize % 256);
-        let (axis, first) = if axis < 3 {
-            (axis, first)
-        } else {
-            (0, count / 2)
+        // None where no cost is a number.
+        let first = match first[axis] as usize {
+            0 => count / 2,
+            first => first,
         };
         self.order_sides([start, end], axis, first);
         first
+    }
+
+    /// The boxes of the `i`-th along each axis.
+    #[inline(always)]
+    fn boxes_at(&self, i: usize) -> [&Bounds; 3] {
+        [
+            &self.boxes[self.at(0, i)],
+            &self.boxes[self.at(1, i)],
+            &self.boxes[self.at(2, i)],
+        ]
     }
 
     /// Brings the first so many along `axis` to the front of the other orders, each side sorted as it was.

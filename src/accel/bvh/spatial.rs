@@ -23,6 +23,7 @@ use super::super::pages;
 use super::super::sah::half_area;
 use super::binned::{self, PARALLEL, Place};
 use super::chop::{self, Plane};
+use super::loops::Loops;
 use super::partition::Task;
 use super::reference::{Bounds, Extent, Reference};
 use super::{BinaryTree, Node, small};
@@ -43,9 +44,12 @@ pub(super) fn build(mesh: &Mesh) -> BinaryTree {
     let builder = Builder {
         mesh,
         overlap: OVERLAP * half_area(&mesh.bounds()),
+        loops: Loops::best(),
     };
     let top = builder.top(Task::new(&mut references, &mut spare, count), 0);
-    binned::grow(top.count(), |node, place| top.fill(node, place))
+    binned::grow(top.count(), 1, |node, place| {
+        top.fill(node, place, builder.loops);
+    })
 }
 
 /// The top of a tree.
@@ -68,9 +72,9 @@ impl Top<'_> {
         }
     }
 
-    fn fill(self, node: &mut Node, place: Place) {
+    fn fill(self, node: &mut Node, place: Place, loops: Loops) {
         let (bounds, count, sides) = match self {
-            Top::Rest(task) => return binned::split(node, task, place),
+            Top::Rest(task) => return binned::split(node, task, place, loops),
             Top::Split {
                 bounds,
                 count,
@@ -83,8 +87,8 @@ impl Top<'_> {
         let (a, b) = children.split_at_mut(1);
         join(
             count,
-            || first.fill(&mut a[0], a_place),
-            || second.fill(&mut b[0], b_place),
+            || first.fill(&mut a[0], a_place, loops),
+            || second.fill(&mut b[0], b_place, loops),
         );
     }
 }
@@ -106,6 +110,7 @@ struct Builder<'a> {
     mesh: &'a Mesh,
     /// Least half area of an overlap that is worth a spatial split.
     overlap: f64,
+    loops: Loops,
 }
 
 impl Builder<'_> {
@@ -132,7 +137,7 @@ impl Builder<'_> {
 
     /// Both sides of the better split.
     fn divided<'a>(&self, task: Task<'a>) -> [Task<'a>; 2] {
-        let object = task.choose();
+        let object = task.choose(self.loops);
         let overlaps = object.as_ref().is_none_or(|choice| {
             let [a, b] = choice.split.sides.map(|side| side.aabb());
             half_area(&a.intersection(b)) > self.overlap
@@ -150,7 +155,7 @@ impl Builder<'_> {
             None => task,
         };
         match object {
-            Some(choice) => task.divided(&choice),
+            Some(choice) => task.divided(self.loops, &choice),
             None => task.halved(),
         }
     }

@@ -24,7 +24,7 @@ pub(super) fn depth(nodes: &[Node]) -> u32 {
     deepest
 }
 
-/// Checks that every node is reached once, in order and within the stack's depth, that boxes contain those
+/// Checks that every node is reached once but rooms that were left over, in order and within the stack's depth, that boxes contain those
 /// below them, and that the boxes of the leaves that list a triangle together contain it.
 pub(super) fn validate(tree: &BinaryTree, mesh: &Mesh) -> Result<(), String> {
     if mesh.is_empty() != tree.nodes.is_empty() {
@@ -81,10 +81,10 @@ fn references(tree: &BinaryTree, mesh: &Mesh) -> Result<Vec<(u32, usize)>, Strin
         }
         let first = node.first as usize;
         if !node.is_leaf() {
-            if first != next {
+            if first < next {
                 return Err(format!("the children of node {index} are out of order"));
             }
-            next += 2;
+            next = first + 2;
             open.push((first + 1, depth + 1, bounds));
             open.push((first, depth + 1, bounds));
             continue;
@@ -99,7 +99,8 @@ fn references(tree: &BinaryTree, mesh: &Mesh) -> Result<Vec<(u32, usize)>, Strin
             references.push((prim, index));
         }
     }
-    match reached.iter().position(|r| !r) {
+    let is_lost = |(reached, node): (&bool, &Node)| !reached && *node != Node::NONE;
+    match reached.iter().zip(&tree.nodes).position(is_lost) {
         Some(index) => Err(format!("node {index} is never reached")),
         None => Ok(references),
     }

@@ -23,7 +23,7 @@ use crate::geometry::lanes::Isa;
 use crate::geometry::{Aabb, Ray};
 use crate::scene::Mesh;
 
-use super::bvh::{Build, binary};
+use super::bvh::{Build, grouped};
 use super::packets;
 use super::slab::{Scene, WideCorners};
 use super::traced::finish_in_order;
@@ -51,7 +51,7 @@ pub(super) const ENTRY: AcceleratorEntry = AcceleratorEntry {
     resolution: None,
     peer: None,
     build: |request| {
-        let tree = binary(request.mesh, Build::of(request.params), 1);
+        let tree = grouped(request.mesh, Build::of(request.params));
         let (mut wide, slots) = BvhWide::collapse(&tree, request.mesh);
         wide.way = Way::of(request.params);
         finish_in_order(wide, &slots, request)

@@ -15,6 +15,7 @@ impl<const W: usize> Corners<W> {
 
     /// Those that `corners(lane)` gives; a triangle without area is made NaN: edge functions of one point are 0, which the
     /// shear takes for a ray on an edge and looks at again in `f64`, or rounding errors where they are fused.
+    #[inline(always)]
     pub(super) fn with_area_or_nan(corners: impl Fn(usize) -> [Vec3; 3]) -> Self {
         Self::of(|lane| match super::with_area(corners(lane)) {
             [a, b, c] if a == b && b == c => [Vec3::NAN; 3],
@@ -23,9 +24,18 @@ impl<const W: usize> Corners<W> {
     }
 
     /// Those that `corners(lane)` gives, as they are.
+    #[inline(always)]
     pub(super) fn of(corners: impl Fn(usize) -> [Vec3; 3]) -> Self {
-        let corners: [_; W] = std::array::from_fn(corners);
-        Self([0, 1, 2].map(|axis| [0, 1, 2].map(|i| corners.map(|triangle| triangle[i][axis]))))
+        let mut rows = [[[0.0; W]; 3]; 3];
+        // A loop that is compiled into its caller, as that of `super::rows_of`.
+        for lane in 0..W {
+            for (i, corner) in corners(lane).into_iter().enumerate() {
+                for (rows, x) in rows.iter_mut().zip(corner.to_array()) {
+                    rows[i][lane] = x;
+                }
+            }
+        }
+        Self(rows)
     }
 
     /// The three corners.

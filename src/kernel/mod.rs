@@ -168,6 +168,7 @@ pub struct KernelEntry {
 ///
 /// A test that rounds would hit such a triangle where its determinant is a rounding error instead of 0. Area is decided
 /// in `f64`, which is exact unless the corners' exponents lie more than 29 apart.
+#[inline(always)]
 fn with_area(corners: [Vec3; 3]) -> [Vec3; 3] {
     let [a, b, c] = corners.map(Vec3::as_dvec3);
     if (b - a).cross(c - a) == DVec3::ZERO {
@@ -184,8 +185,25 @@ fn lane_of<const ROWS: usize>(rows: &[[f32; 8]; ROWS], lane: usize) -> [[f32; 1]
 
 /// Three rows of `W` components from one vector a lane.
 fn rows<const W: usize>(vector: impl Fn(usize) -> Vec3) -> [[f32; W]; 3] {
-    let vectors: [Vec3; W] = std::array::from_fn(vector);
-    std::array::from_fn(|axis| std::array::from_fn(|lane| vectors[lane][axis]))
+    let [rows] = rows_of(|lane| [vector(lane)]);
+    rows
+}
+
+/// Three rows of `W` components from each of `N` vectors a lane. A loop that is compiled into its caller: packing is a fifth
+/// of building a tree.
+#[inline(always)]
+fn rows_of<const N: usize, const W: usize>(
+    vectors: impl Fn(usize) -> [Vec3; N],
+) -> [[[f32; W]; 3]; N] {
+    let mut all = [[[0.0; W]; 3]; N];
+    for lane in 0..W {
+        for (rows, vector) in all.iter_mut().zip(vectors(lane)) {
+            for (row, x) in rows.iter_mut().zip(vector.to_array()) {
+                row[lane] = x;
+            }
+        }
+    }
+    all
 }
 
 /// Something that is done with a kernel whose type is known.

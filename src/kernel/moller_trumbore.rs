@@ -79,13 +79,16 @@ impl<const EPS: bool> Kernel for MollerTrumbore<EPS> {
     type Packed<const W: usize> = Packed<W>;
     type Prepared<const W: usize, L: Lane<W>> = LaneRay<L>;
 
+    #[inline(always)]
     fn pack<const W: usize>(&self, corners: impl Fn(usize) -> [Vec3; 3]) -> Packed<W> {
-        let corners = |lane| super::with_area(corners(lane));
-        Packed {
-            v0: super::rows(|lane| corners(lane)[0]),
-            e1: super::rows(|lane| corners(lane)[1] - corners(lane)[0]),
-            e2: super::rows(|lane| corners(lane)[2] - corners(lane)[0]),
-        }
+        let [v0, e1, e2] = super::rows_of(
+            #[inline(always)]
+            |lane| {
+                let [a, b, c] = super::with_area(corners(lane));
+                [a, b - a, c - a]
+            },
+        );
+        Packed { v0, e1, e2 }
     }
 
     #[inline(always)]

@@ -64,6 +64,7 @@ impl<const FUSED: bool> Kernel for Woop<FUSED> {
     type Packed<const W: usize> = Corners<W>;
     type Prepared<const W: usize, L: Lane<W>> = Prepared<L>;
 
+    #[inline(always)]
     fn pack<const W: usize>(&self, corners: impl Fn(usize) -> [Vec3; 3]) -> Corners<W> {
         Corners::with_area_or_nan(corners)
     }

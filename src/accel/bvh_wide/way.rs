@@ -50,13 +50,13 @@ pub(super) enum Plan {
 }
 
 /// A tree of this size stays in the caches near a core, where taking turns costs more than it hides. Measured with bounce
-/// rays on bunny (5 MB), armadillo and sponza (20 MB), where it lost up to a tenth, and on two meshes of 55 MB, where it
+/// rays on bunny (4 MB), armadillo and sponza (20 MB), where it lost up to a tenth, and on two meshes of 55 MB, where it
 /// won a twentieth, and up to a half with random ones.
 const NEAR_CACHES: usize = 24 << 20;
 
 /// For rays that begin far from each other that is less: what one needs is not there yet for the next. Measured with
-/// random rays: a fifth won on bunny (5 MB) and armadillo, a tenth lost on sponza.
-const OWN_CACHE: usize = 4 << 20;
+/// random rays: a fifth won on bunny (4 MB) and armadillo, a tenth lost on sponza.
+const OWN_CACHE: usize = 3 << 20;
 
 /// Neighbours whose directions are closer than this (the cosine) find in the caches what the one before left there.
 const COHERENT: f32 = 0.9;

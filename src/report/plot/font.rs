@@ -1,20 +1,24 @@
 //! The one typeface of all plots: Inter (SIL Open Font License, `font/LICENSE.txt`), reduced to Latin, Greek and
 //! mathematical signs and without kerning, so a text is exactly as wide as its advances say, wherever it is drawn.
 
-use std::sync::{Arc, LazyLock};
+use std::sync::LazyLock;
 
-use ab_glyph::{Font, FontRef};
+use ab_glyph::{Font, FontRef, OutlineCurve, Point};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use plotters::style::{FontStyle, register_font};
-use resvg::usvg::fontdb::Database;
+use tiny_skia::{Path, PathBuilder};
 
 /// What SVG files name: our typeface first, then what a reader's machine is likely to have. Texts carry their width,
 /// so the layout holds with any of them.
 pub(super) const FAMILY: &str = "Inter, Helvetica, Arial, sans-serif";
 
-const REGULAR: &[u8] = include_bytes!("../font/Inter-Regular.otf");
-const BOLD: &[u8] = include_bytes!("../font/Inter-SemiBold.otf");
+/// The typeface as OpenType files.
+pub(super) const REGULAR: &[u8] = include_bytes!("../font/Inter-Regular.otf");
+pub(super) const BOLD: &[u8] = include_bytes!("../font/Inter-SemiBold.otf");
+
+/// Units an em where a face does not say.
+const EM: f32 = 1000.0;
 
 /// Weight of a text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,6 +34,11 @@ static FACES: LazyLock<Option<[FontRef<'static>; 2]>> = LazyLock::new(|| {
     ])
 });
 
+fn face(weight: Weight) -> Option<&'static FontRef<'static>> {
+    let faces = FACES.as_ref()?;
+    Some(&faces[usize::from(weight == Weight::Bold)])
+}
+
 /// Makes the typeface known to plotters; needed before anything is drawn. Cheap when repeated.
 pub(super) fn register() {
     static DONE: LazyLock<()> = LazyLock::new(|| {
@@ -38,18 +47,6 @@ pub(super) fn register() {
         let _ = register_font(FAMILY, FontStyle::Bold, BOLD);
     });
     LazyLock::force(&DONE);
-}
-
-/// The typeface for the rasteriser.
-pub(super) fn database() -> Arc<Database> {
-    static DATABASE: LazyLock<Arc<Database>> = LazyLock::new(|| {
-        let mut database = Database::new();
-        database.load_font_data(REGULAR.to_vec());
-        database.load_font_data(BOLD.to_vec());
-        database.set_sans_serif_family("Inter");
-        Arc::new(database)
-    });
-    Arc::clone(&DATABASE)
 }
 
 /// Rules that bring the typeface into a page.
@@ -67,15 +64,49 @@ pub(in crate::report) fn css() -> String {
 
 /// Width of `text` at `size` pixels an em.
 pub(super) fn width(text: &str, size: f64, weight: Weight) -> f64 {
-    let Some(faces) = FACES.as_ref() else {
+    let Some(face) = face(weight) else {
         // 0.6 em a character is wider than any Latin text: a layout made with it has room to spare.
         return 0.6 * size * text.chars().count() as f64;
     };
-    let face = &faces[usize::from(weight == Weight::Bold)];
-    let units = f64::from(face.units_per_em().unwrap_or(1000.0));
+    let units = f64::from(face.units_per_em().unwrap_or(EM));
     text.chars()
         .map(|c| f64::from(face.h_advance_unscaled(face.glyph_id(c))) / units * size)
         .sum()
+}
+
+/// The outlines of `text`: x from 0 to 1 over its [`width`], y in ems, downwards, 0 at the base line; `None` where it has
+/// no ink.
+pub(super) fn outline(text: &str, weight: Weight) -> Option<Path> {
+    let face = face(weight)?;
+    let units = face.units_per_em().unwrap_or(EM);
+    let whole = width(text, f64::from(units), weight) as f32;
+    let mut path = PathBuilder::new();
+    let mut from = 0.0;
+    for glyph in text.chars().map(|c| face.glyph_id(c)) {
+        let at = |p: &Point| ((from + p.x) / whole, -p.y / units);
+        let mut last = None;
+        for curve in face.outline(glyph).into_iter().flat_map(|o| o.curves) {
+            let (OutlineCurve::Line(start, end)
+            | OutlineCurve::Quad(start, _, end)
+            | OutlineCurve::Cubic(start, _, _, end)) = &curve;
+            // A curve that does not go on from the last one begins another contour.
+            if last != Some(*start) {
+                let (x, y) = at(start);
+                path.move_to(x, y);
+            }
+            last = Some(*end);
+            let (x, y) = at(end);
+            match &curve {
+                OutlineCurve::Line(..) => path.line_to(x, y),
+                OutlineCurve::Quad(_, a, _) => path.quad_to(at(a).0, at(a).1, x, y),
+                OutlineCurve::Cubic(_, a, b, _) => {
+                    path.cubic_to(at(a).0, at(a).1, at(b).0, at(b).1, x, y);
+                }
+            }
+        }
+        from += face.h_advance_unscaled(glyph);
+    }
+    path.finish()
 }
 
 /// `text` if it is at most `room` wide, else its beginning and end around an ellipsis.

@@ -1,8 +1,11 @@
-//! What every figure must hold, whatever the report: checked on what the rasteriser, which measures texts by itself,
-//! makes of the SVG.
+//! What every figure must hold, whatever the report: checked on what a whole SVG renderer, which measures texts by
+//! itself, makes of the SVG.
 
 use std::collections::HashSet;
+use std::sync::{Arc, LazyLock};
 
+use resvg::tiny_skia::{Color, Pixmap, Transform};
+use resvg::usvg::fontdb::Database;
 use resvg::usvg::{Group, Node, Options, Paint, Rect, Stroke, TextChunk, Tree};
 
 use super::*;
@@ -40,8 +43,15 @@ fn drawn() -> Vec<Drawn> {
 }
 
 fn parsed(svg: &str) -> Tree {
+    static TYPEFACE: LazyLock<Arc<Database>> = LazyLock::new(|| {
+        let mut database = Database::new();
+        for face in [font::REGULAR, font::BOLD] {
+            database.load_font_data(face.to_vec());
+        }
+        Arc::new(database)
+    });
     let options = Options {
-        fontdb: font::database(),
+        fontdb: Arc::clone(&TYPEFACE),
         ..Options::default()
     };
     Tree::from_str(svg, &options).expect("well-formed SVG")
@@ -242,6 +252,34 @@ fn a_png_has_twice_the_pixels_of_its_figure() {
     );
     let ink = pixels.chunks(3).filter(|p| p[0] < 100).count();
     assert!(ink > 1000, "{ink} dark pixels: the text is missing");
+}
+
+/// What a whole SVG renderer makes of `svg`.
+fn second_opinion(svg: &str) -> Pixmap {
+    let tree = parsed(svg);
+    let size = tree.size().to_int_size().scale_by(raster::SCALE).unwrap();
+    let mut pixels = Pixmap::new(size.width(), size.height()).unwrap();
+    pixels.fill(Color::WHITE);
+    let place = Transform::from_scale(raster::SCALE, raster::SCALE);
+    resvg::render(&tree, place, &mut pixels.as_mut());
+    pixels
+}
+
+#[test]
+fn a_picture_shows_what_a_whole_renderer_makes_of_the_svg() {
+    for (case, report) in cases::all() {
+        for (name, subject) in figures(&report) {
+            let drawn = super::drawn(&report, &subject, PlotFormat::Png.style());
+            let Some(svg) = drawn.unwrap() else { continue };
+            let (ours, theirs) = (raster::pixels(&svg).unwrap(), second_opinion(&svg));
+            let size = |p: &Pixmap| (p.width(), p.height());
+            assert_eq!(size(&ours), size(&theirs), "{case}/{name}");
+            let pairs = ours.data().iter().zip(theirs.data());
+            // Roundings tint edges a little; a text or a line a pixel off turns ground to ink, thousands of times.
+            let off = pairs.filter(|(a, b)| a.abs_diff(**b) > 64).count();
+            assert!(off * 100_000 < ours.data().len(), "{case}/{name}: {off}");
+        }
+    }
 }
 
 #[test]

@@ -214,7 +214,7 @@ impl<'a, 'p, T: Items, K: Kernel, I: Isa> Packet<'a, 'p, T, K, I> {
 
     /// Eight triangles as the packet sees them, and which of them it can hit.
     #[inline(always)]
-    pub fn see(&self, [a, b, c]: [LaneVec3<I::X8>; 3]) -> Seen {
+    pub(super) fn see(&self, [a, b, c]: [LaneVec3<I::X8>; 3]) -> Seen {
         let origin = LaneVec3::splat(self.bundle.rays[0].origin);
         let corners = [a.minus(origin), b.minus(origin), c.minus(origin)];
         Seen::new(&corners, &self.bundle.interval)
@@ -229,7 +229,7 @@ impl<'a, 'p, T: Items, K: Kernel, I: Isa> Packet<'a, 'p, T, K, I> {
 
     /// Writes the answers of its rays to the batch's.
     #[inline(always)]
-    pub fn answer<A: Answer>(&self, answers: &mut [A]) {
+    pub(super) fn answer<A: Answer>(&self, answers: &mut [A]) {
         let answers = &mut answers[self.first..self.first + self.bundle.rays.len()];
         if self.vectors.is_empty() {
             answers.fill(A::of(Hit::MISS));

@@ -29,7 +29,8 @@ const ALONE: Range<usize> = 256..8192;
 /// Why rays are no packet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Refused {
-    /// Their origins or signs differ, or numbers are at the ends of their range: others may be one.
+    /// Their origins or what a kernel or structure asks of their directions differ, or numbers are at the ends of their range:
+    /// others may be one.
     Unlike,
     /// They were, and it cost too much: so it will for their neighbours.
     TooDear,

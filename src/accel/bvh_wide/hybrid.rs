@@ -6,8 +6,8 @@
 //!                                    many lanes go on o   o few lanes go on: each ray walks this subtree alone
 //! ```
 //!
-//! A node costs sixteen rays together about twice what it costs one, and nothing that was predicted wrong; leaves are tested
-//! ray by ray, eight triangles at once.
+//! A node costs sixteen rays together about twice what it costs one, and nothing that was predicted wrong. A leaf is tested
+//! ray by ray, eight triangles at once, or triangle by triangle, sixteen rays at once, whichever are fewer tests.
 //!
 //! **Source:** C. Benthin, I. Wald, S. Woop, M. Ernst and W. Mark, "Combining Single and Packet-Ray Tracing for Arbitrary Ray
 //! Distributions on the Intel MIC Architecture", TVCG 2012. **Differs:** rays are grouped by octant first.

@@ -6,6 +6,10 @@
 //!                one interval of directions: it meets boxes, and whole blocks of triangles before any ray does
 //! ```
 //!
+//! What a test costs decides little: most triangles of a block are missed by all sixteen rays of a vector, and three dot products
+//! tell so (see [`cull`]). Setting sixteen rays up and handing their answers out cost as much as their tests until both were
+//! transposed in registers ([`Isa::rays`], [`Isa::hits`]), and are left out for packets that meet no triangle.
+//!
 //! **Source:** I. Wald, S. Boulos and P. Shirley, "Ray Tracing Deformable Scenes using Dynamic Bounding Volume
 //! Hierarchies", 2007, for packets with interval arithmetic. **Differs:** the cull of triangles keeps what a kernel's
 //! rounding could accept, so a watertight kernel stays so.

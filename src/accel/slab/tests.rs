@@ -1,10 +1,11 @@
+use super::super::packet::Bundle;
 use super::super::testbed::Dice;
 use super::*;
 use crate::geometry::Vec3;
 use crate::geometry::lanes::{InstructionSet, Isa, Lane, LaneMask, Task};
 
 /// A ray and a box of whole numbers, so that all of it can be judged exactly.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy)]
 struct Case {
     origin: [i64; 3],
     dir: [i64; 3],
@@ -201,6 +202,73 @@ fn a_nearly_axis_parallel_ray_touches_what_it_grazes() {
 #[test]
 fn any_ray_is_judged_right() {
     never_missed(5, |_, _| {});
+}
+
+/// A box and rays from one origin, in the lanes of an instruction set: whether the packet meets the box; `None` where the
+/// rays are no packet.
+struct Together<'a> {
+    rays: &'a [Ray],
+    aabb: Aabb,
+}
+
+impl Task for Together<'_> {
+    type Out = Option<bool>;
+
+    fn run<I: Isa>(self) -> Option<bool> {
+        let bundle = Bundle::new::<I>(self.rays);
+        let slabs = PacketSlabs::<I::X8>::new(&bundle, &self.aabb)?;
+        let mut boxes: WideCorners = [[[f32::INFINITY; 8], [f32::NEG_INFINITY; 8]]; 3];
+        for (axis, [least, greatest]) in boxes.iter_mut().enumerate() {
+            (least[6], greatest[6]) = (self.aabb.min[axis], self.aabb.max[axis]);
+        }
+        let (entry, exit): (I::X8, I::X8) = slabs.clip(&boxes, f32::INFINITY);
+        let met = entry.le(exit).bits();
+        assert_eq!(met & !(1 << 6), 0, "a lane without a box was met");
+        Some(met != 0)
+    }
+}
+
+#[test]
+fn a_packet_meets_what_one_of_its_rays_touches() {
+    let mut dice = Dice::new(7);
+    let (mut met, mut missed) = (0, 0);
+    for _ in 0..20_000 {
+        let (a, b) = (numbers(&mut dice, 1 << 12), numbers(&mut dice, 1 << 12));
+        let lead = Case {
+            origin: numbers(&mut dice, 1 << 13),
+            // Nearly across an axis as often as not, so that signs differ within a packet.
+            dir: numbers(&mut dice, 1 << 10).map(|d| if dice.below(2) == 0 { d } else { d >> 7 }),
+            least: [0, 1, 2].map(|i: usize| a[i].min(b[i])),
+            greatest: [0, 1, 2].map(|i: usize| a[i].max(b[i])),
+        };
+        let spread = [1, 16, 128][dice.below(3) as usize];
+        let cases: Vec<Case> = (0..=dice.below(20))
+            .map(|_| {
+                let [x, y, z] = numbers(&mut dice, spread);
+                let [dx, dy, dz] = lead.dir;
+                Case {
+                    dir: [dx + x, dy + y, dz + z],
+                    ..lead
+                }
+            })
+            .filter(|case| case.dir != [0; 3])
+            .collect();
+        if cases.is_empty() {
+            continue;
+        }
+        let floats = |case: &Case| case.floats(1.0, 1.0, 0.0);
+        let rays: Vec<Ray> = cases.iter().map(|case| floats(case).0).collect();
+        let aabb = floats(&cases[0]).1;
+        let touched = cases.iter().any(|case| case.touches(0));
+        for set in InstructionSet::ALL {
+            let together = set.run(Together { rays: &rays, aabb });
+            let together = together.expect("ordinary numbers make a packet");
+            assert!(together || !touched, "{set}: missed {cases:?}");
+            met += u32::from(touched);
+            missed += u32::from(!together);
+        }
+    }
+    assert!(met > 1000 && missed > 1000, "{met} met, {missed} missed");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Every kind of lane computes what one number does, on every instruction set that this machine has.
 
 use super::*;
+use crate::geometry::Hit;
 use proptest::prelude::*;
 
 fn number() -> impl Strategy<Value = f32> {
@@ -166,4 +167,65 @@ proptest! {
 fn the_best_instruction_set_is_available() {
     assert!(InstructionSet::best().is_available());
     assert!(InstructionSet::Portable.is_available());
+}
+
+/// Rays that become lanes, and lanes that become hits.
+struct Transposed<'a>(&'a [Ray; SIXTEEN]);
+
+impl Task for Transposed<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<I: Isa>(self) {
+        let lanes = I::rays(self.0);
+        let few = RayLanes::of::<I>(5, |lane| &self.0[lane]);
+        let LaneRay { origin, dir } = lanes.lines;
+        let answers = HitLanes {
+            t: origin.x,
+            u: dir.y,
+            v: lanes.t_max,
+            prim: dir.z,
+        };
+        let mut hits = [Hit::MISS; SIXTEEN];
+        I::hits(&answers, &mut hits);
+        for (lane, ray) in self.0.iter().enumerate() {
+            let of = |lanes: [I::Rays; 3]| Vec3::from(lanes.map(|row| row.get(lane)));
+            assert_eq!(of([origin.x, origin.y, origin.z]), ray.origin);
+            assert_eq!(of([dir.x, dir.y, dir.z]), ray.dir);
+            assert_eq!(lanes.t_min.get(lane), ray.t_min);
+            assert_eq!(lanes.t_max.get(lane), ray.t_max);
+            assert_eq!(few.t_max.get(lane), self.0[lane.min(4)].t_max);
+            let hit = Hit {
+                t: ray.origin.x,
+                u: ray.dir.y,
+                v: ray.t_max,
+                prim: ray.dir.z.to_bits(),
+            };
+            assert_eq!(hits[lane], hit);
+        }
+    }
+}
+
+#[test]
+fn rays_become_lanes_and_lanes_hits() {
+    let rays: [Ray; SIXTEEN] = std::array::from_fn(|i| {
+        let x = 8.0 * i as f32;
+        Ray {
+            origin: Vec3::new(x, x + 1.0, x + 2.0),
+            t_min: x + 3.0,
+            dir: Vec3::new(x + 4.0, x + 5.0, x + 6.0),
+            t_max: x + 7.0,
+        }
+    });
+    for set in InstructionSet::ALL {
+        set.run(Transposed(&rays));
+    }
+}
+
+#[test]
+fn bits_tell_zeros_apart_and_equal_nans_not() {
+    let zeros = F32x8::from_fn(|lane| if lane < 4 { 0.0 } else { -0.0 });
+    assert_eq!(zeros.same_bits(F32x8::splat(0.0)).bits(), 0x0f);
+    let nans = F32x8::splat(f32::NAN);
+    assert_eq!(nans.same_bits(nans).bits(), 0xff);
 }

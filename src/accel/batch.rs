@@ -76,8 +76,8 @@ pub trait Rays<'a> {
         'a: 'p;
 
     /// The visitor of a packet, the first ray of which has index `first`; handed back by [`Rays::finish_packet`]. `None`
-    /// where the kernel wants its rays one by one. It
-    /// gives up, and ends the traversal, when its cost exceeds `budget`, about nanoseconds.
+    /// where the kernel wants its rays one by one. It gives up, and ends the traversal, when its cost exceeds `budget`, about
+    /// nanoseconds.
     fn begin_packet<'p>(
         &mut self,
         bundle: &'p Bundle<'a, <Self::Isa as Isa>::Rays>,

@@ -63,6 +63,9 @@ pub struct Hit {
     pub prim: u32,
 }
 
+/// What code that reads and writes them by registers relies on.
+const _: () = assert!(size_of::<Ray>() == 32 && size_of::<Hit>() == 16);
+
 impl Hit {
     /// The triangle index that says "none".
     pub const NO_PRIM: u32 = u32::MAX;

@@ -269,6 +269,22 @@ mod tests {
     }
 
     #[test]
+    fn halving_at_the_greatest_depth_loses_no_triangle_whatever_the_order_along_other_axes() {
+        for copies in 2..24 {
+            let mut triangles = geometric(-120..149).repeat(copies);
+            for (i, triangle) in triangles.iter_mut().enumerate() {
+                let size = triangle[0].x;
+                let moved = Vec3::new(0.0, (i * 7 % 13) as f32, (i * 5 % 11) as f32) * size;
+                *triangle = triangle.map(|corner| corner + moved);
+            }
+            let mesh = mesh(&triangles);
+            for build in BUILDS {
+                validate::validate(&binary(&mesh, build, 1), &mesh).expect("valid");
+            }
+        }
+    }
+
+    #[test]
     fn near_children_first_leaves_few_tests_of_a_closed_sphere() {
         let mesh = mesh(&sphere(64));
         let accel = super::super::testbed::built(&mesh, "bvh", "moller-trumbore");

@@ -112,6 +112,8 @@ impl Sorted<'_> {
         }
         let middle = start
             + if !may_choose(depth, count) {
+                // Below it may be chosen again, along any axis.
+                self.order_sides([start, end], 0, count / 2);
                 count / 2
             } else if count <= 3 {
                 self.split_one_off(start, count)

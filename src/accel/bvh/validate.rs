@@ -24,8 +24,8 @@ pub(super) fn depth(nodes: &[Node]) -> u32 {
     deepest
 }
 
-/// Checks that every node is reached once but rooms that were left over, in order and within the stack's depth, that boxes contain those
-/// below them, and that the boxes of the leaves that list a triangle together contain it.
+/// Checks that every node but rooms left over is reached once, in order and within the stack's depth, that boxes contain
+/// those below them, and that the boxes of the leaves that list a triangle together contain it.
 pub(super) fn validate(tree: &BinaryTree, mesh: &Mesh) -> Result<(), String> {
     if mesh.is_empty() != tree.nodes.is_empty() {
         return Err("only an empty mesh has an empty tree".to_owned());

@@ -128,6 +128,9 @@ impl<'a, R: Rays<'a>> Task for Hybrid<'_, 'a, R> {
 
     #[inline(always)]
     fn run<I: Isa>(self) -> Shared {
+        if self.range.is_empty() {
+            return Shared::default();
+        }
         let (tree, batch) = (self.tree, self.batch);
         let (stack, waiting) = self.stacks.with_group();
         waiting.shared = Shared::default();
@@ -238,8 +241,7 @@ fn together<'a, R: Rays<'a>>(
     (stack, waiting): (&mut Stack, &mut GroupStack),
 ) {
     let rays = batch.rays();
-    let last = indices.len() - 1;
-    let ray = |lane: usize| &rays[indices[lane.min(last)] as usize];
+    let ray = |lane: usize| &rays[indices[lane] as usize];
     let lanes = RayLanes::of::<R::Isa>(indices.len(), ray);
     let lead = octant(ray(0));
     let near = [lead & 1, lead >> 1 & 1, lead >> 2 & 1];
@@ -269,12 +271,13 @@ fn together<'a, R: Rays<'a>>(
             && pays_together(tree, next, together)
         {
             for block in next.blocks() {
-                batch.test_sixteen(sixteen, together, block, group.visitors);
-            }
-            let mut rest = together;
-            while rest != 0 {
-                group.update(rest.trailing_zeros() as usize % GROUP);
-                rest &= rest - 1;
+                let open = together & group.open;
+                batch.test_sixteen(sixteen, open, block, group.visitors);
+                let mut rest = open;
+                while rest != 0 {
+                    group.update(rest.trailing_zeros() as usize % GROUP);
+                    rest &= rest - 1;
+                }
             }
         } else {
             let active = if apart == 0 { together } else { apart };
@@ -363,7 +366,6 @@ impl GroupStack {
         self.shared.nodes += 1;
         self.shared.rays += active.count_ones();
         let limits = lanes_of(&group.limits);
-        let lead = active.trailing_zeros() as usize & (GROUP - 1);
         let first = self.waits;
         for (lane, child) in node.children.iter().enumerate() {
             let (entry, exit) = group.slabs.clip(&node.boxes, lane, limits);
@@ -378,7 +380,7 @@ impl GroupStack {
             if V::ORDERED && met != 0 {
                 let entries = &mut self.entries[level][lane].0;
                 entry.write(entries);
-                item.key = entries[lead];
+                item.key = entries[met.trailing_zeros() as usize & (GROUP - 1)];
                 while place > first && self.items[place - 1].key < item.key {
                     self.items[place] = self.items[place - 1];
                     place -= 1;

@@ -8,7 +8,7 @@
 //!
 //! What a test costs decides little: most triangles of a block are missed by all sixteen rays of a vector, and three dot products
 //! tell so (see [`cull`]). Setting sixteen rays up and handing their answers out cost as much as their tests until both were
-//! transposed in registers ([`Isa::rays`], [`Isa::hits`]), and are left out for packets that meet no triangle.
+//! transposed ([`Isa::rays`], [`Isa::hits`]), and are left out for packets that meet no triangle.
 //!
 //! **Source:** I. Wald, S. Boulos and P. Shirley, "Ray Tracing Deformable Scenes using Dynamic Bounding Volume
 //! Hierarchies", 2007, for packets with interval arithmetic. **Differs:** the cull of triangles keeps what a kernel's
@@ -55,7 +55,7 @@ pub struct Packet<'a, 'p, T: Items, K: Kernel, I: Isa> {
     budget: u32,
 }
 
-/// The work of a packet. It is counted, not timed, so that a batch is traced alike on every machine.
+/// The work of a packet. It is counted, not timed, so that a batch is traced alike whatever else the machine does.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Work {
     /// Items that were met.

@@ -260,7 +260,7 @@ fn a_packet_meets_what_one_of_its_rays_touches() {
         let rays: Vec<Ray> = cases.iter().map(|case| floats(case).0).collect();
         let aabb = floats(&cases[0]).1;
         let touched = cases.iter().any(|case| case.touches(0));
-        for set in InstructionSet::ALL {
+        for set in InstructionSet::ALL.into_iter().filter(|s| s.is_available()) {
             let together = set.run(Together { rays: &rays, aabb });
             let together = together.expect("ordinary numbers make a packet");
             assert!(together || !touched, "{set}: missed {cases:?}");

@@ -12,7 +12,7 @@
 use super::{Isa, Lane, LaneRay, LaneVec3};
 use crate::geometry::{Hit, Ray};
 
-/// Rays of a packet: as many as [`Isa::Rays`] has lanes.
+/// Rays of a vector: as many as [`Isa::Rays`] has lanes.
 pub const SIXTEEN: usize = 16;
 
 /// Sixteen rays, a lane each.

@@ -31,7 +31,16 @@ fn check<const W: usize, L: Lane<W>>(xs: &[f32; 16], ys: &[f32; 16]) {
         a.min(b),
         a.mul_add(b, a),
     ];
-    let masks = [a.lt(b), a.le(b), a.eq(b), a.gt(b), a.ge(b), !a.lt(b)];
+    let masks = [
+        a.lt(b),
+        a.le(b),
+        a.eq(b),
+        a.gt(b),
+        a.ge(b),
+        !a.lt(b),
+        a.same_bits(b),
+        a.same_bits(a),
+    ];
     let chosen = L::select(a.lt(b), a, b);
     for i in 0..L::N {
         let (x, y) = (xs[i], ys[i]);
@@ -63,6 +72,8 @@ fn check<const W: usize, L: Lane<W>>(xs: &[f32; 16], ys: &[f32; 16]) {
             x > y,
             x >= y,
             (x >= y) | x.is_nan() | y.is_nan(),
+            x.to_bits() == y.to_bits(),
+            true,
         ];
         for (k, (mask, truth)) in masks.iter().zip(truths).enumerate() {
             assert_eq!(

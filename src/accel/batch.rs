@@ -1,6 +1,6 @@
 //! Batches: the rays that a structure traces in the way that suits them, and where their answers go.
 
-use crate::geometry::lanes::{Isa, Lane, LaneMask, RayLanes, SIXTEEN, prefetch};
+use crate::geometry::lanes::{Isa, Lane, LaneMask, Ones, RayLanes, SIXTEEN, prefetch};
 use crate::geometry::{Hit, Ray};
 use crate::kernel::Kernel;
 
@@ -45,8 +45,18 @@ pub trait Rays<'a> {
     /// As [`Rays::begin`], in the place of the visitor of a ray that is done: what it holds is moved nowhere.
     fn begin_again(&self, index: usize, visitor: &mut Self::Visitor);
 
+    /// Where the items lie in memory.
+    fn items(&self) -> *const u8;
+
+    /// The bytes of one.
+    const ITEM_BYTES: usize;
+
     /// Asks the memory for an item that will be tested soon.
-    fn prefetch(&self, item: u32);
+    #[inline(always)]
+    fn prefetch(&self, item: u32) {
+        let place = item as usize * Self::ITEM_BYTES;
+        prefetch(self.items().wrapping_add(place), Self::ITEM_BYTES);
+    }
 
     /// Whether its kernel is worth compiling every way of tracing a batch for: where not, rays go one by one.
     const WAYS: bool;
@@ -135,10 +145,11 @@ impl<'a, T: Items, K: Kernel, I: Isa, A: Answer, const OCCLUSION: bool> Rays<'a>
     }
 
     #[inline(always)]
-    fn prefetch(&self, item: u32) {
-        let place = self.packed.items.as_ptr().wrapping_add(item as usize);
-        prefetch(place, size_of::<T::Item<K>>().div_ceil(64));
+    fn items(&self) -> *const u8 {
+        self.packed.items.as_ptr().cast()
     }
+
+    const ITEM_BYTES: usize = size_of::<T::Item<K>>();
 
     const WAYS: bool = K::PACKETS && I::SIXTEEN;
 
@@ -169,15 +180,14 @@ impl<'a, T: Items, K: Kernel, I: Isa, A: Answer, const OCCLUSION: bool> Rays<'a>
                 let Some(hit) = self.packed.kernel.intersect(rays, triangle) else {
                     return;
                 };
-                let mut met = hit.mask.bits() & active;
+                let met = hit.mask.bits() & active;
                 if met == 0 {
                     return;
                 }
                 let bounds = K::t_error_bound(rays, triangle, hit.t);
-                while met != 0 {
-                    let lane = met.trailing_zeros() as usize % SIXTEEN;
-                    met &= met - 1;
-                    let taken = visitors[lane].offer(prim, &hit, lane, || bounds.get(lane));
+                for lane in Ones(met) {
+                    let visitor = &mut visitors[lane % SIXTEEN];
+                    let taken = visitor.offer(prim, &hit, lane, || bounds.get(lane));
                     if OCCLUSION && taken {
                         active &= !(1 << lane);
                     }

@@ -11,7 +11,7 @@
 use rayon::prelude::*;
 
 use crate::geometry::Ray;
-use crate::geometry::lanes::{InstructionSet, Isa, Lane, LaneMask, LaneRay, Portable, Task};
+use crate::geometry::lanes::{InstructionSet, Isa, Lane, LaneMask, LaneRay, Ones, Portable, Task};
 use crate::kernel::{Kernel, LaneHit};
 use crate::scene::Mesh;
 
@@ -220,14 +220,12 @@ impl Items for Blocks {
         };
         // NaN is left out.
         let near = hit.t.ge(I::X8::splat(query.t_least())) & hit.t.le(I::X8::splat(query.t_most()));
-        let mut met = (hit.mask & near).bits();
+        let met = (hit.mask & near).bits();
         if met == 0 {
             return false;
         }
         let bounds = K::t_error_bound(&prepared, &block.triangles, hit.t);
-        while met != 0 {
-            let lane = met.trailing_zeros() as usize;
-            met &= met - 1;
+        for lane in Ones(met) {
             let prim = block.prims[lane & (LANES - 1)];
             if query.offer(prim, &hit, lane, || bounds.get(lane)) && OCCLUSION {
                 return true;

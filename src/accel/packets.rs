@@ -90,7 +90,7 @@ pub(super) fn trace<'a, S: Together, R: Rays<'a>>(
         let rays = range.len() as u32;
         // The next packet's; the memory has time while this one is traced.
         let next = batch.rays().as_ptr().wrapping_add(range.end);
-        prefetch(next, size * size_of::<Ray>() / 64);
+        prefetch(next, size * size_of::<Ray>());
         match structure.together(batch, range.clone(), scratch) {
             Ok(cost) => {
                 start = range.end;

@@ -59,6 +59,9 @@ impl<'a, T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool>
     #[inline(always)]
     pub fn prepared(&mut self) -> T::Prepared<K, I> {
         let (kernel, ray) = (&self.packed.kernel, self.ray);
+        if K::CHEAPLY_PREPARED {
+            return T::prepare::<K, I>(kernel, ray);
+        }
         match self.prepared {
             Some(prepared) => prepared,
             None => *self.prepared.insert(T::prepare::<K, I>(kernel, ray)),
@@ -134,7 +137,7 @@ pub(super) fn take<K: Kernel, const OCCLUSION: bool>(
         *best = hit;
         let mut error = bound();
         if error == f32::INFINITY {
-            error = t_error(kernel, mesh, ray, &hit);
+            error = t_error(kernel, mesh, ray, hit.prim, hit.t);
         }
         *limit = limit.min(hit.t + error);
         return true;
@@ -145,8 +148,8 @@ pub(super) fn take<K: Kernel, const OCCLUSION: bool>(
 /// A bound on the error of a hit's `t`, where the quick one is not known.
 #[cold]
 #[inline(never)]
-pub(super) fn t_error<K: Kernel>(kernel: &K, mesh: &Mesh, ray: &Ray, hit: &Hit) -> f32 {
-    kernel.t_error(ray, &mesh.corners(hit.prim), hit.t)
+pub(super) fn t_error<K: Kernel>(kernel: &K, mesh: &Mesh, ray: &Ray, prim: u32, t: f32) -> f32 {
+    kernel.t_error(ray, &mesh.corners(prim), t)
 }
 
 /// A test that is compiled for the query's instruction set.

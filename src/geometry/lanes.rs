@@ -27,6 +27,21 @@ pub use pair::Pair;
 pub use portable::{F32x8, Mask8};
 pub use rows::{HitLanes, RayLanes, SIXTEEN};
 
+/// The numbers of the bits of a word that are set, the least first: of the lanes that a mask holds.
+#[derive(Debug, Clone, Copy)]
+pub struct Ones(pub u32);
+
+impl Iterator for Ones {
+    type Item = usize;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<usize> {
+        let rest = self.0;
+        self.0 &= rest.wrapping_sub(1);
+        (rest != 0).then_some(rest.trailing_zeros() as usize)
+    }
+}
+
 /// The truth values of `W` comparisons.
 pub trait LaneMask:
     Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self>

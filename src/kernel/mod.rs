@@ -80,6 +80,9 @@ pub trait Kernel: Debug + Clone + Send + Sync + 'static {
     /// one that is chosen for its speed. All ways of all kernels would take the compiler twice as long.
     const PACKETS: bool = false;
 
+    /// Whether to prepare a ray again costs no more than to keep what was prepared.
+    const CHEAPLY_PREPARED: bool = false;
+
     /// The corners of a block's triangles, off by no more than a rounding of an edge; asked only where
     /// [`Kernel::PACKETS`] says so.
     #[must_use]

@@ -102,6 +102,7 @@ impl<const EPS: bool> Kernel for MollerTrumbore<EPS> {
 
     // A control need not be fast, and is compiled sooner.
     const PACKETS: bool = !EPS;
+    const CHEAPLY_PREPARED: bool = true;
 
     #[inline(always)]
     fn corners<L: Lane<8>>(block: &Packed<8>) -> [LaneVec3<L>; 3] {

@@ -250,7 +250,7 @@ impl Worker {
         let accel = structure.accel.as_ref();
         let mut hits = vec![Hit::MISS; rays.len()];
         let (mut traced, mut seconds) = (0, 0.0);
-        // Some batches a thread at a time, so that a slow structure is given up soon.
+        // A batch a thread at a time, so that a slow structure is given up soon.
         let chunk = trace::BATCH * rayon::current_num_threads();
         // The whole picture at least once: its parts differ in what they cost.
         while seconds < IMPRESSION.as_secs_f64() && !rays.is_empty() {

@@ -16,7 +16,7 @@ use std::marker::PhantomData;
 use std::ops::Range;
 
 use crate::geometry::Ray;
-use crate::geometry::lanes::{Isa, Lane, LaneMask, RayLanes, SIXTEEN, Task};
+use crate::geometry::lanes::{Isa, Lane, LaneMask, Ones, RayLanes, SIXTEEN, Task};
 
 use super::super::slab::{SlabRays, WideSlabRay};
 use super::super::stack::MAX_DEPTH;
@@ -29,10 +29,10 @@ use super::{BvhWide, Child, Node};
 const GROUP: usize = SIXTEEN;
 
 /// Rays that are looked at together to make groups.
-const WINDOW: usize = 128;
+pub(super) const WINDOW: usize = 128;
 
 /// So many rays of a group at a node, in the mean, cost less together than alone.
-const MANY: u32 = 10;
+const MANY: u32 = 11;
 
 /// Fewer rays than this go alone.
 const FEW: u32 = 3;
@@ -273,10 +273,8 @@ fn together<'a, R: Rays<'a>>(
             for block in next.blocks() {
                 let open = together & group.open;
                 batch.test_sixteen(sixteen, open, block, group.visitors);
-                let mut rest = open;
-                while rest != 0 {
-                    group.update(rest.trailing_zeros() as usize % GROUP);
-                    rest &= rest - 1;
+                for lane in Ones(open) {
+                    group.update(lane % GROUP);
                 }
             }
         } else {
@@ -334,10 +332,8 @@ impl<'r, L: Lane<1>, V: Visitor, F: Fn(usize) -> &'r Ray> Task for Apart<'_, '_,
     #[inline(always)]
     fn run<I: Isa>(self) {
         let Self { tree, group, .. } = self;
-        let mut rest = self.active;
-        while rest != 0 {
-            let lane = rest.trailing_zeros() as usize & (GROUP - 1);
-            rest &= rest - 1;
+        for lane in Ones(self.active) {
+            let lane = lane % GROUP;
             let slabs = if self.next.is_leaf() {
                 WideSlabRay::NONE
             } else if group.plain >> lane & 1 == 1 {

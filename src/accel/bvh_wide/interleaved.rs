@@ -1,78 +1,147 @@
-//! Several rays take turns: while one is at a place, the memory fetches the next places of the others.
+//! Several rays take turns: while one is at a place, the memory fetches the next places of the others, and the processor
+//! computes for several at once.
 //!
 //! ```text
-//! flights:  ray 0   ray 1   ray 2   ...   ray 15
-//!           step -> step -> step -> ... -> step -> step ...      each ends by asking for what it will read next;
-//!                                                                a ray that is done makes room for the next of the batch
+//! round:  rays that are over     begin anew with the next of the batch
+//!         rays at nodes          \  each ends its visit by asking for what it will read next
+//!         rays at leaves         /
 //! ```
+//!
+//! The processor has the operations of several rays under way only as long as it guesses right what comes next. So no branch
+//! depends on where a ray goes: what kind of place is next sets a bit; children are put on the stack and the next is taken
+//! from it, whether none is met or several; and what begins beyond a hit is dropped when it is found, not when it is taken.
+//! Without that a round was no quicker than one ray after another, on trees that stay in the caches slower; with it, by a
+//! quarter to two thirds (`raylab trace`, one thread, eight meshes from 6 thousand to a million triangles).
+//!
+//! Tried and not kept: lists of rays in place of bits (two fifths slower: what was just written in bytes is read as a
+//! vector), sorting eight keys where four are met (7 %), and preparing sixteen rays at once in lanes (3 %: taking one out
+//! costs as much as preparing it). Eight rays are 5 % slower than sixteen, and those 2 % slower than 32.
 //!
 //! **Source:** the idea of hiding a cache miss behind other lookups is that of O. Kocberber, B. Falsafi and B. Grot,
 //! "Asynchronous Memory Access Chaining", VLDB 2015. **Differs:** a ray is a state that is stepped, there is no queue.
 
-use crate::geometry::lanes::{Isa, prefetch};
+use std::marker::PhantomData;
+use std::ops::Range;
+
+use crate::geometry::lanes::{Isa, Ones, Task, prefetch};
 
 use super::super::Rays;
 use super::stack::{FLIGHTS, Stacks};
 use super::walk::Walk;
 use super::{BvhWide, Child, Node};
 
+/// Traces the rays of `batch` in `range`.
+#[inline(always)]
+pub(super) fn trace<'a, R: Rays<'a>>(
+    tree: &BvhWide,
+    batch: &mut R,
+    range: Range<usize>,
+    stacks: &mut Stacks,
+) {
+    R::Isa::enter(Interleaved {
+        tree,
+        batch,
+        range,
+        stacks,
+        lifetime: PhantomData,
+    });
+}
+
+/// Rays that take turns, in a function of its own; see [`super::super::packets`].
+struct Interleaved<'t, 'a, R: Rays<'a>> {
+    tree: &'t BvhWide,
+    batch: &'t mut R,
+    range: Range<usize>,
+    stacks: &'t mut Stacks,
+    lifetime: PhantomData<&'a ()>,
+}
+
 /// A ray under way.
 struct Flight<I: Isa, V> {
     index: usize,
-    /// Which stack is its own.
-    stack: usize,
     walk: Walk<I>,
     visitor: V,
 }
 
-/// Traces all rays of `batch`.
-#[inline(always)]
-pub(super) fn trace<'a, R: Rays<'a>>(tree: &BvhWide, batch: &mut R, stacks: &mut Stacks) {
-    let count = batch.rays().len();
-    let stacks = stacks.first(FLIGHTS);
-    let mut waiting = FLIGHTS.min(count)..count;
-    let mut flights = Vec::with_capacity(FLIGHTS);
-    for index in 0..waiting.start {
-        flights.push(Flight {
-            index,
-            stack: index,
-            walk: Walk::<R::Isa>::new(tree, &batch.rays()[index]),
-            visitor: batch.begin(index),
-        });
+/// What kind of place flights are at, a bit for each; the others under way are at nodes.
+#[derive(Default)]
+struct Kinds {
+    leaves: u32,
+    over: u32,
+}
+
+impl Kinds {
+    #[inline(always)]
+    fn note(&mut self, flight: usize, next: Child) {
+        let over = u32::from(next == Child::NONE);
+        self.over |= over << flight;
+        self.leaves |= (u32::from(next.is_leaf()) ^ over) << flight;
     }
-    let mut turn = 0;
-    while let Some(flight) = flights.get_mut(turn) {
-        let goes_on = flight.walk.step(
-            tree,
-            &mut stacks[flight.stack % FLIGHTS],
-            &mut flight.visitor,
-        );
-        if goes_on {
-            fetch(tree, batch, flight.walk.next);
-        } else {
-            batch.finish(flight.index, &flight.visitor);
-            if let Some(index) = waiting.next() {
-                flight.index = index;
-                flight.walk = Walk::new(tree, &batch.rays()[index]);
-                batch.begin_again(index, &mut flight.visitor);
-            } else {
-                flights.swap_remove(turn);
-            }
+}
+
+impl<'a, R: Rays<'a>> Task for Interleaved<'_, 'a, R> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<I: Isa>(self) {
+        let (tree, batch) = (self.tree, self.batch);
+        let stacks = self.stacks.first(FLIGHTS);
+        let lines = Lines::of(tree, batch);
+        let mut waiting = self.range;
+        let mut flights = Vec::with_capacity(FLIGHTS);
+        let mut kinds = Kinds::default();
+        let mut under_way = 0_u32;
+        for (flight, index) in waiting.by_ref().take(FLIGHTS).enumerate() {
+            flights.push(Flight {
+                index,
+                walk: Walk::<I>::new(tree, &batch.rays()[index]),
+                visitor: batch.begin(index),
+            });
+            kinds.note(flight, tree.root);
+            under_way |= 1 << flight;
         }
-        turn += 1;
-        if turn >= flights.len() {
-            turn = 0;
+        while under_way != 0 {
+            for number in Ones(std::mem::take(&mut kinds.over)) {
+                let flight = &mut flights[number];
+                batch.finish(flight.index, &flight.visitor);
+                if let Some(index) = waiting.next() {
+                    flight.index = index;
+                    flight.walk = Walk::new(tree, &batch.rays()[index]);
+                    batch.begin_again(index, &mut flight.visitor);
+                    kinds.note(number, tree.root);
+                } else {
+                    under_way &= !(1 << number);
+                }
+            }
+            for number in Ones(under_way & !kinds.leaves & !kinds.over) {
+                let Flight { walk, visitor, .. } = &mut flights[number];
+                walk.visit_node(tree, &mut stacks[number], visitor);
+                lines.fetch::<R>(walk.next);
+                kinds.note(number, walk.next);
+            }
+            for number in Ones(std::mem::take(&mut kinds.leaves)) {
+                let Flight { walk, visitor, .. } = &mut flights[number];
+                walk.visit_leaf(&mut stacks[number], visitor);
+                lines.fetch::<R>(walk.next);
+                kinds.note(number, walk.next);
+            }
         }
     }
 }
 
-/// Asks for what a visit of `child` reads first.
-#[inline(always)]
-fn fetch<'a, R: Rays<'a>>(tree: &BvhWide, batch: &R, child: Child) {
-    if child.is_leaf() {
-        batch.prefetch(child.blocks().start);
-    } else {
-        let node = tree.nodes.as_ptr().wrapping_add(child.0 as usize);
-        prefetch(node, size_of::<Node>() / 64);
+/// Where nodes and blocks lie in memory, and the bytes of one.
+struct Lines([(*const u8, usize); 2]);
+
+impl Lines {
+    fn of<'a, R: Rays<'a>>(tree: &BvhWide, batch: &R) -> Self {
+        let nodes = (tree.nodes.as_ptr().cast(), size_of::<Node>());
+        Self([nodes, (batch.items(), R::ITEM_BYTES)])
+    }
+
+    /// Asks for what a visit of `child` reads first; for as much where it is a node, since a branch would be guessed wrong.
+    #[inline(always)]
+    fn fetch<'a, R: Rays<'a>>(&self, child: Child) {
+        let (base, bytes) = self.0[usize::from(child.is_leaf())];
+        prefetch(base.wrapping_add(child.index() * bytes), R::ITEM_BYTES);
     }
 }

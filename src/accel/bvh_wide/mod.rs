@@ -40,7 +40,7 @@ mod way;
 
 use stack::Stacks;
 use walk::Walk;
-use way::{Plan, Way};
+use way::Way;
 
 pub(super) const ENTRY: AcceleratorEntry = AcceleratorEntry {
     name: "bvh-wide",
@@ -83,6 +83,12 @@ impl Child {
         self.0 & Self::LEAF != 0
     }
 
+    /// Of the node, or of the first block.
+    #[inline(always)]
+    fn index(self) -> usize {
+        (self.0 & !Self::LEAF) as usize >> (3 * u32::from(self.is_leaf()))
+    }
+
     /// The blocks of a leaf.
     fn blocks(self) -> Range<u32> {
         let first = (self.0 & !Self::LEAF) >> 3;
@@ -98,9 +104,6 @@ impl Child {
         }
     }
 }
-
-/// Rays that are tried together where it is not known whether that pays.
-const TRIED: usize = 128;
 
 /// Where the numbers of leaves begin.
 const LEAVES: u64 = 1 << 32;
@@ -193,24 +196,14 @@ impl Structure for BvhWide {
             return packets::trace(self, batch, stacks, false);
         }
         let all = 0..batch.rays().len();
-        let plan = match self.way {
-            Some(way) => Plan::Known(way),
-            None => way::choose(self, batch.rays(), !R::Visitor::ORDERED),
-        };
-        match plan {
-            Plan::Known(Way::Interleaved) => interleaved::trace(self, batch, stacks),
-            Plan::Known(Way::Hybrid) => {
+        match self.way.unwrap_or_else(|| way::choose(self, batch.rays())) {
+            Way::Single => packets::trace(self, batch, stacks, false),
+            Way::Packets => packets::trace(self, batch, stacks, true),
+            Way::Hybrid => {
                 hybrid::trace(self, batch, all, stacks);
             }
-            Plan::Known(way) => packets::trace(self, batch, stacks, way == Way::Packets),
-            Plan::Tried => {
-                let (tried, rest) = (0..TRIED.min(all.end), TRIED.min(all.end)..all.end);
-                if hybrid::trace(self, batch, tried, stacks).pays() {
-                    hybrid::trace(self, batch, rest, stacks);
-                } else {
-                    packets::alone(self, batch, rest, stacks);
-                }
-            }
+            Way::Interleaved => interleaved::trace(self, batch, all, stacks),
+            Way::Mixed => way::mixed(self, batch, all, stacks),
         }
     }
 

@@ -1,15 +1,16 @@
 //! The children that wait while a ray goes down a wide tree, each with its key.
 
-use crate::geometry::lanes::{Isa, Lane};
+use crate::geometry::lanes::{Isa, Lane, LaneMask};
 
 use super::super::stack::MAX_DEPTH;
 use super::Child;
 use super::hybrid::GroupStack;
 
-/// Most children that wait: seven a level, and room for a whole vector behind the last.
-const ROOM: usize = 7 * MAX_DEPTH + 8;
+/// Most children that wait: seven a level, below them what ends a walk, and room for a whole vector behind the last.
+const ROOM: usize = 7 * MAX_DEPTH + 9;
 
-/// Room for the children that wait for one ray.
+/// Room for the children that wait for one ray. Below them all lies [`Child::NONE`], so that what is taken last ends its
+/// walk.
 pub struct Stack {
     children: [u32; ROOM],
     keys: [f32; ROOM],
@@ -18,8 +19,8 @@ pub struct Stack {
 /// The bits of a key that are an entry's; the others are the lane's number.
 const ENTRY_BITS: u32 = !7;
 
-/// Rays that are interleaved.
-pub(super) const FLIGHTS: usize = 16;
+/// Rays that are interleaved: no more than a word has bits.
+pub(super) const FLIGHTS: usize = 32;
 
 /// Stacks for the rays that are under way: what a thread needs to traverse a wide tree.
 #[derive(Default)]
@@ -59,18 +60,18 @@ impl Stack {
         }
     }
 
-    /// Room for eight above the first `waiting`: for children, and for keys.
+    /// Room for eight above the `waiting`: for children, and for keys.
     #[inline(always)]
     fn above(&mut self, waiting: usize) -> Option<(&mut [u32; 8], &mut [f32; 8])> {
-        let places = waiting..waiting + 8;
+        let places = waiting + 1..waiting + 9;
         Some((
             self.children[places.clone()].first_chunk_mut()?,
             self.keys[places].first_chunk_mut()?,
         ))
     }
 
-    /// Puts those of `children` whose bit is set in `met` above the first `waiting`, the nearest on top if they are to be
-    /// `ordered`; returns the place of the one on top.
+    /// Puts those of `children` whose bit is set in `met` above the `waiting`, the nearest on top if they are to be
+    /// `ordered`; returns how many wait then.
     #[inline(always)]
     pub(super) fn push<I: Isa>(
         &mut self,
@@ -89,13 +90,85 @@ impl Stack {
         } else {
             I::compress(positive, met, children, above, keys);
         }
-        waiting + met.count_ones() as usize - 1
+        waiting + met.count_ones() as usize
     }
 
-    /// The child at a place, and a bound on its entry: not later than that, where that is positive.
+    /// Drops what begins beyond `limit`, which is finite, of the `waiting`; returns how many stay.
     #[inline(always)]
-    pub(super) fn at(&self, place: usize) -> (Child, f32) {
-        let key = self.keys[place].to_bits() & ENTRY_BITS;
-        (Child(self.children[place]), f32::from_bits(key))
+    pub(super) fn keep<I: Isa>(&mut self, waiting: usize, limit: f32) -> usize {
+        // Keys are entries, but not less than 0, and lanes in their last bits.
+        let limit = I::X8::splat(f32::from_bits(limit.max(0.0).to_bits() | !ENTRY_BITS));
+        let (mut kept, mut seen) = (0, 0);
+        while seen < waiting {
+            let Some((children, keys)) = self.above(seen) else {
+                break;
+            };
+            let (children, keys) = (*children, I::X8::load(keys));
+            let within = keys.le(limit).bits() & ((1 << (waiting - seen).min(8)) - 1);
+            if let Some((children_kept, keys_kept)) = self.above(kept) {
+                I::compress(keys, within, &children, children_kept, keys_kept);
+            }
+            kept += within.count_ones() as usize;
+            seen += 8;
+        }
+        kept
+    }
+
+    /// The child on top of the `waiting`.
+    #[inline(always)]
+    pub(super) fn top(&self, waiting: usize) -> Child {
+        Child(self.children[waiting])
+    }
+
+    /// A bound on its entry: not later than that, where that is positive.
+    #[inline(always)]
+    pub(super) fn top_entry(&self, waiting: usize) -> f32 {
+        f32::from_bits(self.keys[waiting].to_bits() & ENTRY_BITS)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::lanes::{InstructionSet, Task};
+
+    /// Puts 30 children on a stack, eight at a time and each with its key, drops those beyond a limit and gives the rest.
+    struct Kept {
+        limit: f32,
+    }
+
+    impl Task for Kept {
+        type Out = Vec<(u32, f32)>;
+
+        #[inline(always)]
+        fn run<I: Isa>(self) -> Self::Out {
+            let mut stack = Stack::new();
+            let mut waiting = 0;
+            for group in 0..5_u32 {
+                let children = [0, 1, 2, 3, 4, 5, 6, 7].map(|lane| 8 * group + lane);
+                // From -2 on, so that some entries are negative.
+                let keys = I::X8::from_fn(|lane| (7 * (lane + group as usize) % 11) as f32 - 2.0);
+                waiting = stack.push::<I>(waiting, keys, 0b0111_1011, &children, true);
+            }
+            let kept = stack.keep::<I>(waiting, self.limit);
+            let all = (1..=kept).map(|place| (stack.top(place).0, stack.top_entry(place)));
+            assert_eq!(stack.top(0), Child::NONE);
+            all.collect()
+        }
+    }
+
+    #[test]
+    fn what_begins_beyond_a_limit_is_dropped_and_the_rest_keeps_its_order() {
+        let sets = InstructionSet::ALL.into_iter();
+        for set in sets.filter(|set| set.is_available()) {
+            let all = set.run(Kept { limit: 100.0 });
+            assert_eq!(all.len(), 30);
+            for limit in [-1.0, 0.0, 0.5, 3.0, 7.5, 8.0, f32::MAX] {
+                let kept = set.run(Kept { limit });
+                let least = limit.max(0.0);
+                let expected: Vec<_> = all.iter().filter(|(_, key)| *key <= least).collect();
+                assert!(kept.iter().eq(expected), "{set}, {limit}");
+            }
+        }
     }
 }

@@ -15,11 +15,12 @@ use crate::kernel;
 use crate::scene::Mesh;
 
 /// The ways, in the words of the command line.
-const WAYS: [&str; 5] = [
+const WAYS: [&str; 6] = [
     "bvh-wide",
     "bvh-wide:way=single",
     "bvh-wide:way=hybrid",
     "bvh-wide:way=interleaved",
+    "bvh-wide:way=mixed",
     "bvh-wide:way=packets",
 ];
 
@@ -76,11 +77,34 @@ fn batches_of_any_length_are_answered_also_where_the_root_is_a_leaf() {
             .map(|_| Ray::new(Vec3::Z + 1e-3 * dice.vector(), dice.vector()))
             .filter(Ray::is_valid)
             .collect();
-        for count in [0, 1, 17, 100, 127, 128, 129, rays.len()] {
+        for count in [0, 1, 17, 31, 32, 33, 100, 127, 128, 129, rays.len()] {
             for accel in WAYS {
                 assert_agrees("of some length", &mesh, accel, &rays[..count]);
             }
         }
+    }
+}
+
+#[test]
+fn a_long_batch_of_which_parts_suit_groups_and_others_turns_is_answered_as_one_ray_after_another() {
+    let mesh = mesh(&sphere(16));
+    let mut dice = Dice::new(12);
+    let mut rays = Vec::new();
+    for part in 0..4 {
+        // Near origins, so that groups are tried; in every other part rays go the same way for long.
+        let spread = [1e-3, 3.0][part % 2];
+        let way = dice.vector();
+        rays.extend((0..2500).map(|_| {
+            let origin = -2.0 * way + 1e-2 * dice.vector();
+            Ray::new(origin, way + spread * dice.vector())
+        }));
+    }
+    rays.retain(Ray::is_valid);
+    let of = |accel| answers(InstructionSet::best(), &mesh, accel, "woop", &rays);
+    let single = of("bvh-wide:way=single");
+    assert!(single.1.contains(&true) && single.1.contains(&false));
+    for accel in WAYS {
+        assert!(of(accel) == single, "{accel}");
     }
 }
 

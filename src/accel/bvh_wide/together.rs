@@ -7,9 +7,9 @@ use super::super::packet::Bundle;
 use super::super::packets::{Refused, TOO_DEAR, Together};
 use super::super::slab::PacketSlabs;
 use super::BvhWide;
-use super::hybrid;
 use super::stack::Stacks;
 use super::walk::Walk;
+use super::way;
 use crate::geometry::lanes::Isa;
 
 impl Together for BvhWide {
@@ -34,9 +34,9 @@ impl Together for BvhWide {
         batch.finish_packet(packet).ok_or(Refused::TooDear)
     }
 
-    /// Neighbours have much of their way in common, even where they are no packet.
+    /// Neighbours may have much of their way in common, even where they are no packet.
     #[inline(always)]
     fn apart<'a, R: Rays<'a>>(&self, batch: &mut R, range: Range<usize>, stacks: &mut Stacks) {
-        hybrid::trace(self, batch, range, stacks);
+        way::mixed(self, batch, range, stacks);
     }
 }

@@ -8,7 +8,7 @@ use crate::geometry::lanes::{Isa, Lane, LaneMask};
 use super::super::Visitor;
 use super::super::slab::{Clip, WideSlabRay};
 use super::stack::Stack;
-use super::{BvhWide, Child};
+use super::{BvhWide, Child, Node};
 
 /// Where a ray, or a packet of them, is.
 pub(super) struct Walk<I: Isa, C = WideSlabRay> {
@@ -68,9 +68,8 @@ impl<I: Isa, C: Clip<I::X8>> Walk<I, C> {
                 }
             }
         } else {
-            let node = &tree.nodes[self.next.0 as usize];
-            let (entries, exits) = self.slabs.clip(&node.boxes, visitor.t_limit());
-            let met = entries.le(exits).bits();
+            let node = self.node(tree);
+            let (entries, met) = self.meet(node, visitor);
             if met != 0 {
                 if met.is_power_of_two() {
                     let lane = met.trailing_zeros() as usize & 7;
@@ -79,31 +78,80 @@ impl<I: Isa, C: Clip<I::X8>> Walk<I, C> {
                         self.entry = entries.get(lane);
                     }
                 } else {
-                    let children = &node.children;
-                    self.waiting =
-                        stack.push::<I>(self.waiting, entries, met, children, V::ORDERED);
-                    (self.next, self.entry) = stack.at(self.waiting);
+                    self.push::<V>(node, entries, met, stack);
+                    self.pop(stack);
                 }
                 return true;
             }
         }
-        self.pop::<V>(stack, visitor.t_limit())
-    }
-
-    /// Takes the nearest child that waits and begins at `limit` or before; those beyond it are dropped. False if none does.
-    /// Where any hit will do the limit stays where it was when they were met.
-    #[inline(always)]
-    fn pop<V: Visitor>(&mut self, stack: &Stack, limit: f32) -> bool {
-        // Keys are entries, but not less than 0.
-        let limit = limit.max(0.0);
+        // Keys are entries, but not less than 0. Where any hit will do the limit stays where it was when they were met.
+        let limit = visitor.t_limit().max(0.0);
         while self.waiting > 0 {
-            self.waiting -= 1;
-            (self.next, self.entry) = stack.at(self.waiting);
+            self.pop(stack);
             if !V::ORDERED || self.entry <= limit {
                 return true;
             }
         }
         false
+    }
+
+    /// Visits a node in the same way whether no child is met or several; for [`Walk::visit_leaf`].
+    #[inline(always)]
+    pub fn visit_node<V: Visitor>(&mut self, tree: &BvhWide, stack: &mut Stack, visitor: &V) {
+        let node = self.node(tree);
+        let (entries, met) = self.meet(node, visitor);
+        self.push::<V>(node, entries, met, stack);
+        self.next = stack.top(self.waiting);
+        self.waiting = self.waiting.saturating_sub(1);
+    }
+
+    /// Visits a leaf; of what waits, what begins beyond the hit that it may have is dropped at once. Where none is left,
+    /// [`Child::NONE`] is next.
+    #[inline(always)]
+    pub fn visit_leaf<V: Visitor>(&mut self, stack: &mut Stack, visitor: &mut V) {
+        let limit = visitor.t_limit();
+        let mut blocks = self.next.blocks();
+        loop {
+            if visitor.test(blocks.start) {
+                self.next = Child::NONE;
+                return;
+            }
+            blocks.start += 1;
+            if blocks.is_empty() {
+                break;
+            }
+        }
+        let now = visitor.t_limit();
+        if V::ORDERED && now < limit {
+            self.waiting = stack.keep::<I>(self.waiting, now);
+        }
+        self.next = stack.top(self.waiting);
+        self.waiting = self.waiting.saturating_sub(1);
+    }
+
+    #[inline(always)]
+    fn node<'t>(&self, tree: &'t BvhWide) -> &'t Node {
+        &tree.nodes[self.next.0 as usize]
+    }
+
+    /// Where the children of a node are entered, and a bit for each that is met.
+    #[inline(always)]
+    fn meet<V: Visitor>(&self, node: &Node, visitor: &V) -> (I::X8, u32) {
+        let (entries, exits) = self.slabs.clip(&node.boxes, visitor.t_limit());
+        (entries, entries.le(exits).bits())
+    }
+
+    /// Puts the children of `node` that are `met` on the stack.
+    #[inline(always)]
+    fn push<V: Visitor>(&mut self, node: &Node, entries: I::X8, met: u32, stack: &mut Stack) {
+        self.waiting = stack.push::<I>(self.waiting, entries, met, &node.children, V::ORDERED);
+    }
+
+    /// Takes the child on top.
+    #[inline(always)]
+    fn pop(&mut self, stack: &Stack) {
+        (self.next, self.entry) = (stack.top(self.waiting), stack.top_entry(self.waiting));
+        self.waiting -= 1;
     }
 
     fn report<V: Visitor>(&self, tree: &BvhWide, visitor: &mut V) {

@@ -9,6 +9,8 @@
 
 use std::ops::Range;
 
+use crate::geometry::lanes::Ones;
+
 use super::super::share::Span;
 use super::super::{Rays, Visitor};
 use super::GridSkip;
@@ -66,10 +68,8 @@ pub(super) fn trace<'a, R: Rays<'a>>(grid: &GridSkip, batch: &mut R) {
             listed |= u32::from(leap == 0) << lane;
         }
         let mut to_test = 0_u32;
-        listed &= under_way;
-        while listed != 0 {
-            let lane = listed.trailing_zeros() as usize % LANES;
-            listed &= listed - 1;
+        for lane in Ones(listed & under_way) {
+            let lane = lane % LANES;
             let span = grid.cells.span(ways.cell[lane] as usize);
             if span.first != flights[lane].tested {
                 flights[lane].tested = span.first;
@@ -78,9 +78,8 @@ pub(super) fn trace<'a, R: Rays<'a>>(grid: &GridSkip, batch: &mut R) {
                 batch.prefetch(span.first);
             }
         }
-        while to_test != 0 {
-            let lane = to_test.trailing_zeros() as usize % LANES;
-            to_test &= to_test - 1;
+        for lane in Ones(to_test) {
+            let lane = lane % LANES;
             let flight = &mut flights[lane];
             for block in spans[lane].blocks() {
                 if flight.visitor.test(block) {
@@ -89,10 +88,8 @@ pub(super) fn trace<'a, R: Rays<'a>>(grid: &GridSkip, batch: &mut R) {
             }
             ways.stop[lane] = flight.frame.stop(flight.visitor.t_limit());
         }
-        let mut done = ways.advance(grid.dims) & under_way;
-        while done != 0 {
-            let lane = done.trailing_zeros() as usize % LANES;
-            done &= done - 1;
+        for lane in Ones(ways.advance(grid.dims) & under_way) {
+            let lane = lane % LANES;
             let flight = &mut flights[lane];
             batch.finish(flight.index, &flight.visitor);
             if !board(grid, batch, &mut waiting, &mut ways, lane, flight) {

@@ -111,7 +111,7 @@ impl<K: Kernel, I: Isa> Vector<K, I> {
                     prim,
                     ..Hit::MISS
                 };
-                *error = query::t_error(&packed.kernel, &packed.mesh, &rays[lane], &hit);
+                *error = query::t_error(&packed.kernel, &packed.mesh, &rays[lane], hit.prim, hit.t);
             }
         }
         I::Rays::from_fn(|lane| errors[lane & (SIXTEEN - 1)])

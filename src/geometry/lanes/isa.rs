@@ -23,7 +23,7 @@
 
 use std::fmt::{self, Display};
 
-use super::{F32x8, HitLanes, Lane, Pair, RayLanes, SIXTEEN};
+use super::{F32x8, HitLanes, Lane, Ones, Pair, RayLanes, SIXTEEN};
 use crate::geometry::{Hit, Ray};
 
 #[cfg(all(target_arch = "x86_64", not(debug_assertions)))]
@@ -86,14 +86,9 @@ pub trait Isa: Copy + Send + Sync + 'static {
         compressed_values: &mut [u32; 8],
         compressed_keys: &mut [f32; 8],
     ) {
-        let mut rest = met;
-        for (value, key) in compressed_values.iter_mut().zip(compressed_keys) {
-            if rest == 0 {
-                break;
-            }
-            let lane = rest.trailing_zeros() as usize & 7;
-            rest &= rest - 1;
-            (*value, *key) = (values[lane], keys.get(lane));
+        let places = compressed_values.iter_mut().zip(compressed_keys);
+        for ((value, key), lane) in places.zip(Ones(met)) {
+            (*value, *key) = (values[lane & 7], keys.get(lane & 7));
         }
     }
 }
@@ -137,11 +132,8 @@ impl Isa for Portable {
     ) {
         let mut sorted = [0_u32; 8];
         let mut count = 0;
-        let mut rest = met;
-        while rest != 0 {
-            let lane = rest.trailing_zeros();
-            rest &= rest - 1;
-            let key = keys.get(lane as usize).to_bits() & !LANE_BITS | lane;
+        for lane in Ones(met) {
+            let key = keys.get(lane).to_bits() & !LANE_BITS | lane as u32;
             let mut at = count;
             while at > 0 && sorted[at - 1] < key {
                 sorted[at] = sorted[at - 1];
@@ -331,13 +323,13 @@ fn with_avx512<T: Task>(task: T) -> T::Out {
 
 /// Asks for the first `lines` cache lines of what lies at `place`; never reads it, so any address will do.
 #[inline(always)]
-pub fn prefetch<T>(place: *const T, lines: usize) {
+pub fn prefetch<T>(place: *const T, bytes: usize) {
     #[cfg(target_arch = "x86_64")]
-    for line in 0..lines {
+    for line in 0..bytes.div_ceil(64) {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
         // SAFETY: SSE is part of x86-64, and a prefetch of any address is harmless.
         unsafe { _mm_prefetch::<_MM_HINT_T0>(place.cast::<i8>().wrapping_add(64 * line)) };
     }
     #[cfg(not(target_arch = "x86_64"))]
-    let _ = (place, lines);
+    let _ = (place, bytes);
 }

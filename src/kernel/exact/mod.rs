@@ -30,7 +30,7 @@
 //! Fast Robust Geometric Predicates", 1997. **Differs:** one bound for all three edge functions of a triangle, from numbers
 //! that are there anyway, so that the filter costs no more than the test it guards.
 
-use crate::geometry::lanes::{Lane, LaneMask, LaneRay, LaneVec3};
+use crate::geometry::lanes::{Lane, LaneMask, LaneRay, LaneVec3, Ones};
 use crate::geometry::{Hit, Ray, Vec3};
 use crate::registry::Params;
 use crate::scene::Mesh;
@@ -292,10 +292,7 @@ impl Kernel for Exact {
         let [u, v, w] = filtered.edges;
         let inverse = L::splat(1.0) / (u + v + w);
         let mut t = [f32::NAN; MOST_LANES];
-        let mut rest = sure;
-        while rest != 0 {
-            let lane = rest.trailing_zeros() as usize;
-            rest &= rest - 1;
+        for lane in Ones(sure) {
             let (origin, dir) = line::<W, L>(&ray.rays, lane);
             t[lane & (MOST_LANES - 1)] = crossing::time(origin, dir, &tri.triangle(lane));
         }

@@ -11,6 +11,10 @@
 //! are at `--n auto`, or at each n of LIST. The page goes to standard output; with `--out` it is kept as `peers.md`, with all
 //! samples in `report.json` beside it.
 //!
+//! A scene has 120 runs: `--quick` takes two minutes for `plant` on one core and a few more for a million triangles, most of
+//! them builds; without it each run is sampled for two to eight seconds longer, a scene for 5 to 15 minutes in all, the three
+//! for half an hour or more.
+//!
 //! What is measured and how is the lab's: this only chooses what to measure, and [`raylab::report`] makes the page.
 
 mod measure;

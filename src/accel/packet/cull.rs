@@ -29,7 +29,7 @@ impl Seen {
     /// The triangles with these corners relative to the origin, for rays with directions between `dirs`.
     #[inline(always)]
     pub fn new<L: Lane<8>>([a, b, c]: &[LaneVec3<L>; 3], dirs: &[Vec3; 2]) -> Self {
-        let far = largest(a).max(largest(b)).max(largest(c));
+        let far = a.largest().max(b.largest()).max(c.largest());
         let fast = dirs[0].abs().max(dirs[1].abs()).max_element();
         // A kernel's edge functions are off by less than 20 roundings of products of two distances and a direction's
         // component, these here by less than 10 more, of each of three components.
@@ -86,12 +86,6 @@ impl Seen {
         let yz = dirs.y.mul_add_freely(L::splat(y), dirs.z * L::splat(z));
         dirs.x.mul_add_freely(L::splat(x), yz)
     }
-}
-
-/// Largest component.
-#[inline(always)]
-fn largest<L: Lane<8>>(v: &LaneVec3<L>) -> L {
-    v.x.abs().max(v.y.abs()).max(v.z.abs())
 }
 
 /// Least and greatest dot product of `normal` with a direction between `dirs`.

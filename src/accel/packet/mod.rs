@@ -124,7 +124,7 @@ impl<'a, L: Lane<1>> Bundle<'a, L> {
         };
         let lead = first.lines.origin;
         let (mut least, mut greatest) = (first.lines.dir, first.lines.dir);
-        let mut longest = [size(&least), size(&least)];
+        let mut longest = [least.largest(); 2];
         let (mut t_min, mut t_max) = (first.t_min, first.t_max);
         let mut alike = is_everywhere(&first, LaneVec3::splat(rays[0].origin));
         for of in &all[1..=last] {
@@ -132,7 +132,7 @@ impl<'a, L: Lane<1>> Bundle<'a, L> {
             let dir = &of.lines.dir;
             least = each(&least, dir, L::min);
             greatest = each(&greatest, dir, L::max);
-            longest = [longest[0].min(size(dir)), longest[1].max(size(dir))];
+            longest = [longest[0].min(dir.largest()), longest[1].max(dir.largest())];
             (t_min, t_max) = (t_min.min(of.t_min), t_max.max(of.t_max));
         }
         Self {
@@ -176,12 +176,6 @@ fn is_everywhere<L: Lane<1>>(lanes: &RayLanes<L>, origin: LaneVec3<L>) -> bool {
     let own = &lanes.lines.origin;
     let same = own.x.same_bits(origin.x) & own.y.same_bits(origin.y) & own.z.same_bits(origin.z);
     same.bits() == 0xffff
-}
-
-/// The largest component.
-#[inline(always)]
-fn size<L: Lane<1>>(dir: &LaneVec3<L>) -> L {
-    dir.x.abs().max(dir.y.abs()).max(dir.z.abs())
 }
 
 /// `choose` of each component.

@@ -102,26 +102,18 @@ pub(super) fn sheared<const W: usize, L: Lane<W>>(
     ray: &Prepared<L>,
     tri: &Corners<W>,
 ) -> [LaneVec3<L>; 3] {
-    let [kx, ky, kz] = ray.axes;
-    let rows = [&tri.0[kx], &tri.0[ky], &tri.0[kz]];
-    [
-        corner(ray, rows, 0),
-        corner(ray, rows, 1),
-        corner(ray, rows, 2),
-    ]
+    let [a, b, c] = &tri.0;
+    [corner(ray, a), corner(ray, b), corner(ray, c)]
 }
 
-/// One of the three, from the rows of all.
+/// One of the three.
 #[inline(always)]
-fn corner<const W: usize, L: Lane<W>>(
-    ray: &Prepared<L>,
-    [x, y, z]: [&[[f32; W]; 3]; 3],
-    i: usize,
-) -> LaneVec3<L> {
-    let z = L::load(&z[i]) - ray.origin.z;
+fn corner<const W: usize, L: Lane<W>>(ray: &Prepared<L>, rows: &[[f32; W]; 3]) -> LaneVec3<L> {
+    let [kx, ky, kz] = ray.axes;
+    let z = L::load(&rows[kz]) - ray.origin.z;
     LaneVec3 {
-        x: L::load(&x[i]) - ray.origin.x - ray.shear.x * z,
-        y: L::load(&y[i]) - ray.origin.y - ray.shear.y * z,
+        x: L::load(&rows[kx]) - ray.origin.x - ray.shear.x * z,
+        y: L::load(&rows[ky]) - ray.origin.y - ray.shear.y * z,
         z,
     }
 }

@@ -25,7 +25,7 @@ pub struct Vector<K: Kernel, I: Isa> {
 impl<K: Kernel, I: Isa> Vector<K, I> {
     /// The rays of `beams`, which begin where `lead` does.
     #[inline(always)]
-    pub fn new(kernel: &K, lead: &Ray, beams: &Beams<I::Rays>) -> Self {
+    pub(super) fn new(kernel: &K, lead: &Ray, beams: &Beams<I::Rays>) -> Self {
         let lines = LaneRay {
             origin: LaneVec3::splat(lead.origin),
             dir: beams.dirs,

@@ -61,7 +61,7 @@ fn every_run_of_a_plan_ends_valid_with_its_samples() {
     let plan = plan();
     let events = events(&plan, &Done::default(), |_, _| ());
     let records = finished(&events);
-    let ids: BTreeSet<String> = plan.runs().iter().map(raylab::lab::RunConfig::id).collect();
+    let ids: BTreeSet<String> = plan.runs().iter().map(RunConfig::id).collect();
     assert_eq!(ids, records.keys().cloned().collect());
     for record in records.values() {
         assert!(record.valid, "{record:?}");
@@ -230,7 +230,7 @@ fn a_stopped_sweep_goes_on_without_losing_or_repeating_a_run() {
 #[test]
 fn a_finished_plan_has_nothing_left_to_do() {
     let plan = plan();
-    let finished = plan.runs().iter().map(raylab::lab::RunConfig::id).collect();
+    let finished = plan.runs().iter().map(RunConfig::id).collect();
     let mut events = Vec::new();
     sweep(&plan, &finished, &Control::default(), &mut |event| {
         events.push(event);

@@ -5,10 +5,15 @@
 //! ```
 //!
 //! SCENE is what the program takes: a path to an .obj, a bundled name, a family with its size. Without any, `plant`,
-//! `sphereflake:4` and `city:300`. Embree must be installed. Samples of all structures on the same rays are interleaved,
-//! one thread, default builds; a second, shorter run with two threads times builds and how speed grows. A set has half a
-//! million rays, unless `--rays-count` says otherwise; grids are at `--n auto`, or at each n of LIST. The page goes
-//! to standard output; with `--out` it is kept as `peers.md`, with all samples in `report.json` beside it.
+//! `sphereflake:4` and `city:300`. Embree must be installed. All structures trace the same rays, whole sets however slow one
+//! is, and their samples are interleaved, one thread, default builds; so are those of `bvh-wide` with both kernels, and those
+//! of one and two threads, which also time builds. A set has half a million rays, unless `--rays-count` says otherwise; grids
+//! are at `--n auto`, or at each n of LIST. The page goes to standard output; with `--out` it is kept as `peers.md`, with all
+//! samples in `report.json` beside it.
+//!
+//! A scene has 120 runs: `--quick` takes two minutes for `plant` on one core and a few more for a million triangles, most of
+//! them builds; without it each run is sampled for two to eight seconds longer, a scene for 5 to 15 minutes in all, the three
+//! for half an hour or more.
 //!
 //! What is measured and how is the lab's: this only chooses what to measure, and [`raylab::report`] makes the page.
 
@@ -18,7 +23,7 @@ use std::process::ExitCode;
 
 use raylab::accel;
 use raylab::kernel;
-use raylab::lab::{self, Plan};
+use raylab::lab::{self, Budget, Plan};
 use raylab::registry::Choice;
 use raylab::report;
 
@@ -28,12 +33,12 @@ use measure::Options;
 /// in the scene and the less they gain. `--rays-count` shows how much.
 const RAYS: usize = 1 << 19;
 
-/// One share of what is measured: accelerators and a kernel on some ray sets.
+/// One share of what is measured, in one sweep: all of it on the same rays of a scene is interleaved.
 struct Share {
     accels: Vec<Choice>,
-    kernel: &'static str,
+    kernels: &'static [&'static str],
     rays: &'static [&'static str],
-    threads: usize,
+    threads: &'static [usize],
 }
 
 fn main() -> ExitCode {
@@ -61,7 +66,7 @@ fn run() -> Result<(), String> {
 /// Everything that is measured. A watertight kernel stands beside Embree's robust test, the fast one beside its fast test;
 /// the promise of coherence is tried where it can pay.
 fn shares() -> Result<Vec<Share>, String> {
-    const PAIRS: [(&str, &str); 2] = [("woop", "on"), ("moller-trumbore", "off")];
+    const PAIRS: [(&[&str], &str); 2] = [(&["woop"], "on"), (&["moller-trumbore"], "off")];
     const SETS: [(&[&str], &[&str]); 2] = [
         (&["primary", "shadow"], &["single", "packet", "coherent"]),
         (&["bounce", "random"], &["single", "packet"]),
@@ -77,7 +82,7 @@ fn shares() -> Result<Vec<Share>, String> {
     .map(str::to_owned)
     .to_vec();
     let mut shares = Vec::new();
-    for (kernel, robust) in PAIRS {
+    for (kernels, robust) in PAIRS {
         for (rays, modes) in SETS {
             let mut accels = own.clone();
             for quality in ["medium", "high"] {
@@ -87,7 +92,7 @@ fn shares() -> Result<Vec<Share>, String> {
                     }),
                 );
             }
-            if kernel == "woop" {
+            if kernels == ["woop"] {
                 let others = [
                     "obvhs",
                     "obvhs:build=slow",
@@ -96,26 +101,30 @@ fn shares() -> Result<Vec<Share>, String> {
                 ];
                 accels.extend(others.map(str::to_owned));
             }
-            shares.push(share(&accels, kernel, rays, 1)?);
+            shares.push(share(&accels, kernels, rays, &[1])?);
         }
     }
+    // Once more, beside what these ratios are of.
+    let rays = &["primary", "bounce"];
+    let wide = ["bvh-wide".to_owned()];
+    shares.push(share(&wide, &["woop", "moller-trumbore"], rays, &[1])?);
     let two = ["bvh-wide", "embree", "embree:mode=packet"].map(str::to_owned);
-    shares.push(share(&two, "woop", &["primary", "bounce"], 2)?);
+    shares.push(share(&two, &["woop"], rays, &[1, 2])?);
     Ok(shares)
 }
 
 fn share(
     accels: &[String],
-    kernel: &'static str,
+    kernels: &'static [&'static str],
     rays: &'static [&'static str],
-    threads: usize,
+    threads: &'static [usize],
 ) -> Result<Share, String> {
     let accels = accels
         .iter()
         .map(|name| accel::parse(name).map_err(|e| e.to_string()));
     Ok(Share {
         accels: accels.collect::<Result<_, _>>()?,
-        kernel,
+        kernels,
         rays,
         threads,
     })
@@ -128,16 +137,22 @@ fn plan(options: &Options, share: &Share) -> Result<Plan, String> {
             .map(str::to_owned)
             .to_vec();
     }
+    let kernels = share.kernels.iter();
+    let kernels = kernels.map(|name| kernel::parse(name).map_err(|e| e.to_string()));
     Ok(Plan {
         scenes,
         accels: share.accels.clone(),
         n: lab::parse_n_list(&options.n).map_err(|e| e.to_string())?,
-        kernels: vec![kernel::parse(share.kernel).map_err(|e| e.to_string())?],
+        kernels: kernels.collect::<Result<_, _>>()?,
         rays: share.rays.iter().map(|&rays| rays.to_owned()).collect(),
-        threads: vec![share.threads],
+        threads: share.threads.to_vec(),
         ray_count: options.ray_count,
         seed: 1,
-        budget: options.budget,
+        budget: Budget {
+            // Whoever is slow, all get the same rays, and those of a picture stay neighbours.
+            whole_sets: true,
+            ..options.budget
+        },
         // All structures on the same rays must stand in memory together to be sampled in turn.
         memory_limit: 16 << 30,
     })

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use raylab::accel;
 use raylab::kernel;
 use raylab::lab::{
-    Budget, Control, Done, Event, NRule, Plan, RunRecord, StopReason, sweep, sweep_from,
+    Budget, Control, Done, Event, NRule, Plan, RunConfig, RunRecord, StopReason, sweep, sweep_from,
 };
 
 #[path = "fixture/plan.rs"]
@@ -61,7 +61,7 @@ fn every_run_of_a_plan_ends_valid_with_its_samples() {
     let plan = plan();
     let events = events(&plan, &Done::default(), |_, _| ());
     let records = finished(&events);
-    let ids: BTreeSet<String> = plan.runs().iter().map(raylab::lab::RunConfig::id).collect();
+    let ids: BTreeSet<String> = plan.runs().iter().map(RunConfig::id).collect();
     assert_eq!(ids, records.keys().cloned().collect());
     for record in records.values() {
         assert!(record.valid, "{record:?}");
@@ -144,6 +144,44 @@ fn events_come_in_order_and_the_share_done_rises_to_one() {
 }
 
 #[test]
+fn samples_of_all_kernels_and_thread_counts_on_the_same_rays_are_interleaved() {
+    let mut plan = Plan {
+        accels: ["bvh", "brute"].map(|a| accel::parse(a).unwrap()).to_vec(),
+        threads: vec![1, 2],
+        ..plan()
+    };
+    plan.scenes.truncate(1);
+    plan.budget.max_samples = plan.budget.min_samples;
+    let runs: BTreeMap<String, RunConfig> =
+        plan.runs().into_iter().map(|run| (run.id(), run)).collect();
+    // What is sampled, in the order in which it is.
+    let interleaved = |plan: &Plan| {
+        let events = events(plan, &Done::default(), |_, _| ());
+        let sampled: Vec<&RunConfig> = events
+            .iter()
+            .filter_map(|event| match event {
+                Event::Sampled { id, .. } => Some(&runs[id]),
+                _ => None,
+            })
+            .collect();
+        let each = plan.runs().len() / plan.rays.len();
+        assert_eq!(
+            sampled.len(),
+            each * plan.rays.len() * plan.budget.min_samples
+        );
+        sampled.chunks(each).all(|round| {
+            let ids: BTreeSet<String> = round.iter().map(|run| run.id()).collect();
+            ids.len() == each && round.iter().all(|run| run.rays == round[0].rays)
+        })
+    };
+    assert!(interleaved(&plan));
+    // Without room for more than the largest structure, each is sampled alone.
+    let records = finished(&events(&plan, &Done::default(), |_, _| ()));
+    plan.memory_limit = records.values().map(|r| r.memory_bytes).max().unwrap();
+    assert!(!interleaved(&plan));
+}
+
+#[test]
 fn a_stopped_sweep_goes_on_without_losing_or_repeating_a_run() {
     let plan = plan();
     let mut left = Done::default();
@@ -192,7 +230,7 @@ fn a_stopped_sweep_goes_on_without_losing_or_repeating_a_run() {
 #[test]
 fn a_finished_plan_has_nothing_left_to_do() {
     let plan = plan();
-    let finished = plan.runs().iter().map(raylab::lab::RunConfig::id).collect();
+    let finished = plan.runs().iter().map(RunConfig::id).collect();
     let mut events = Vec::new();
     sweep(&plan, &finished, &Control::default(), &mut |event| {
         events.push(event);
@@ -273,4 +311,15 @@ fn rays_that_would_take_too_long_are_sampled_and_the_run_says_so() {
             .any(|w| w.contains("seeded sample of"))
     );
     assert!(records.values().all(|r| r.valid));
+    plan.budget.whole_sets = true;
+    let whole = finished(&events(&plan, &Done::default(), |_, _| ()));
+    for rays in &plan.rays {
+        let of_set = whole.values().filter(|r| r.config.rays == *rays);
+        let counts: BTreeSet<u64> = of_set.map(|r| r.ray_count).collect();
+        assert!(
+            counts.len() == 1 && counts.first() > Some(&brute.ray_count),
+            "{counts:?}"
+        );
+    }
+    assert_eq!(whole.len(), records.len());
 }

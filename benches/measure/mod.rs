@@ -76,7 +76,7 @@ impl Options {
     }
 }
 
-/// Carries `plans` out, one after the other, as one report. A run that cannot be made is told and left out.
+/// Carries `plans` out, one sweep after the other, as one report. A run that cannot be made is told and left out.
 ///
 /// # Errors
 /// There is no plan, or one cannot be carried out at all.
@@ -85,10 +85,13 @@ pub fn measure(plans: &[Plan]) -> Result<Report, String> {
     let command = std::env::args().collect();
     let provenance = Provenance::gather(first, command).map_err(|e| e.to_string())?;
     let mut runs = Vec::new();
-    for plan in plans {
+    for (number, plan) in plans.iter().enumerate() {
         let told = &mut |event| match event {
             Event::Finished { record } => {
-                let run = Run::from(record.as_ref());
+                let run = Run {
+                    sweep: (plans.len() > 1).then_some(number as u32),
+                    ..Run::from(record.as_ref())
+                };
                 eprintln!("{}", line(&run));
                 runs.push(run);
             }

@@ -326,6 +326,16 @@ impl<L> LaneVec3<L> {
         Self { x, y, z }
     }
 
+    /// The largest absolute component, lane by lane; where one is NaN, so may this be.
+    #[must_use]
+    #[inline(always)]
+    pub fn largest<const W: usize>(self) -> L
+    where
+        L: Lane<W>,
+    {
+        self.x.abs().max(self.y.abs()).max(self.z.abs())
+    }
+
     /// Componentwise difference.
     #[inline(always)]
     #[must_use]

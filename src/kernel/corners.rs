@@ -3,7 +3,7 @@
 use crate::geometry::Vec3;
 use crate::geometry::lanes::{Lane, LaneVec3};
 
-/// The corners of `W` triangles by axis: x, y and z of all corners, a row of lanes each.
+/// The corners of `W` triangles: x, y and z of each, a row of lanes each.
 #[derive(Debug, Clone, Copy)]
 pub struct Corners<const W: usize>(pub(super) [[[f32; W]; 3]; 3]);
 
@@ -26,44 +26,23 @@ impl<const W: usize> Corners<W> {
     /// Those that `corners(lane)` gives, as they are.
     #[inline(always)]
     pub(super) fn of(corners: impl Fn(usize) -> [Vec3; 3]) -> Self {
-        let mut rows = [[[0.0; W]; 3]; 3];
-        // A loop that is compiled into its caller, as that of `super::rows_of`.
-        for lane in 0..W {
-            for (i, corner) in corners(lane).into_iter().enumerate() {
-                for (rows, x) in rows.iter_mut().zip(corner.to_array()) {
-                    rows[i][lane] = x;
-                }
-            }
-        }
-        Self(rows)
+        Self(super::rows_of(corners))
     }
 
     /// The three corners.
     #[inline(always)]
     pub(super) fn load<L: Lane<W>>(&self) -> [LaneVec3<L>; 3] {
         // No closure: it would be compiled for no instruction set.
-        [self.corner(0), self.corner(1), self.corner(2)]
-    }
-
-    #[inline(always)]
-    fn corner<L: Lane<W>>(&self, i: usize) -> LaneVec3<L> {
-        let [x, y, z] = &self.0;
-        LaneVec3 {
-            x: L::load(&x[i]),
-            y: L::load(&y[i]),
-            z: L::load(&z[i]),
-        }
+        let [a, b, c] = &self.0;
+        [LaneVec3::load(a), LaneVec3::load(b), LaneVec3::load(c)]
     }
 
     /// The triangle in a lane.
     #[inline(always)]
     pub(super) fn triangle(&self, lane: usize) -> [Vec3; 3] {
-        let [x, y, z] = &self.0;
-        [
-            Vec3::new(x[0][lane], y[0][lane], z[0][lane]),
-            Vec3::new(x[1][lane], y[1][lane], z[1][lane]),
-            Vec3::new(x[2][lane], y[2][lane], z[2][lane]),
-        ]
+        let corner = |[x, y, z]: &[[f32; W]; 3]| Vec3::new(x[lane], y[lane], z[lane]);
+        let [a, b, c] = &self.0;
+        [corner(a), corner(b), corner(c)]
     }
 }
 
@@ -71,11 +50,11 @@ impl Corners<8> {
     /// One triangle of a block.
     #[inline(always)]
     pub(super) fn lane(&self, lane: usize) -> Corners<1> {
-        let [x, y, z] = &self.0;
+        let [a, b, c] = &self.0;
         Corners([
-            super::lane_of(x, lane),
-            super::lane_of(y, lane),
-            super::lane_of(z, lane),
+            super::lane_of(a, lane),
+            super::lane_of(b, lane),
+            super::lane_of(c, lane),
         ])
     }
 }

@@ -52,18 +52,12 @@ impl Edge for Pbrt {
     }
 }
 
-/// The greatest of three absolute values.
-#[inline(always)]
-fn largest<const W: usize, L: Lane<W>>(a: L, b: L, c: L) -> L {
-    a.abs().max(b.abs()).max(c.abs())
-}
-
 /// The bound on the error of `t` that pbrt computes beside each hit.
 #[inline(always)]
 fn error_of_t<const W: usize, L: Lane<W>>(sheared: &Sheared<L, L::Mask>) -> L {
-    let ([a, b, c], [u, v, w]) = (sheared.corners, sheared.edges);
-    let (x, y) = (largest(a.x, b.x, c.x), largest(a.y, b.y, c.y));
-    let (z, e) = (largest(a.z, b.z, c.z), largest(u, v, w));
+    let [u, v, w] = sheared.edges;
+    let [x, y, z] = shear::farthest(&sheared.corners);
+    let e = LaneVec3 { x: u, y: v, z: w }.largest();
     let (gamma2, gamma3) = (L::splat(gamma(2)), L::splat(gamma(3)));
     let gamma5 = L::splat(gamma(5));
     let dz = gamma3 * z;

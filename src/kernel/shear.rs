@@ -102,26 +102,18 @@ pub(super) fn sheared<const W: usize, L: Lane<W>>(
     ray: &Prepared<L>,
     tri: &Corners<W>,
 ) -> [LaneVec3<L>; 3] {
-    let [kx, ky, kz] = ray.axes;
-    let rows = [&tri.0[kx], &tri.0[ky], &tri.0[kz]];
-    [
-        corner(ray, rows, 0),
-        corner(ray, rows, 1),
-        corner(ray, rows, 2),
-    ]
+    let [a, b, c] = &tri.0;
+    [corner(ray, a), corner(ray, b), corner(ray, c)]
 }
 
-/// One of the three, from the rows of all.
+/// One of the three.
 #[inline(always)]
-fn corner<const W: usize, L: Lane<W>>(
-    ray: &Prepared<L>,
-    [x, y, z]: [&[[f32; W]; 3]; 3],
-    i: usize,
-) -> LaneVec3<L> {
-    let z = L::load(&z[i]) - ray.origin.z;
+fn corner<const W: usize, L: Lane<W>>(ray: &Prepared<L>, rows: &[[f32; W]; 3]) -> LaneVec3<L> {
+    let [kx, ky, kz] = ray.axes;
+    let z = L::load(&rows[kz]) - ray.origin.z;
     LaneVec3 {
-        x: L::load(&x[i]) - ray.origin.x - ray.shear.x * z,
-        y: L::load(&y[i]) - ray.origin.y - ray.shear.y * z,
+        x: L::load(&rows[kx]) - ray.origin.x - ray.shear.x * z,
+        y: L::load(&rows[ky]) - ray.origin.y - ray.shear.y * z,
         z,
     }
 }
@@ -188,10 +180,16 @@ impl<L: Copy, M> Sheared<L, M> {
     }
 }
 
-/// Greatest absolute value of three.
+/// How far from the origin the corners lie along each axis: the greatest absolute value of three.
 #[inline(always)]
-fn largest<const W: usize, L: Lane<W>>(a: L, b: L, c: L) -> L {
-    a.abs().max(b.abs()).max(c.abs())
+pub(super) fn farthest<const W: usize, L: Lane<W>>([a, b, c]: &[LaneVec3<L>; 3]) -> [L; 3] {
+    let [x, y, z] = [[a.x, b.x, c.x], [a.y, b.y, c.y], [a.z, b.z, c.z]];
+    [largest(x), largest(y), largest(z)]
+}
+
+#[inline(always)]
+fn largest<const W: usize, L: Lane<W>>([x, y, z]: [L; 3]) -> L {
+    LaneVec3 { x, y, z }.largest()
 }
 
 /// The bound of [`t_error`] from what was rounded, so a little larger, for hits of each lane.
@@ -201,9 +199,9 @@ pub(super) fn t_error_bound<const W: usize, L: Lane<W>, E: Edge>(
     tri: &Corners<W>,
     t: L,
 ) -> L {
-    let [a, b, c] = sheared(ray, tri);
-    let (x, y) = (largest(a.x, b.x, c.x), largest(a.y, b.y, c.y));
-    let reach = largest(a.z, b.z, c.z);
+    let corners = sheared(ray, tri);
+    let [x, y, reach] = farthest(&corners);
+    let [a, b, c] = corners;
     let (moved_x, moved_y) = (ray.shear.x.abs() * reach, ray.shear.y.abs() * reach);
     let (underflow, two) = (L::splat(error::UNDERFLOW), L::splat(2.0));
     // The corners before they were sheared are at most as far as those after, and moved as far.
@@ -213,7 +211,7 @@ pub(super) fn t_error_bound<const W: usize, L: Lane<W>, E: Edge>(
     let (x, y) = (x + dx, y + dy);
     let de = two * (L::splat(error::wide_gamma(2)) * x * y + dx * y + dy * x) + underflow;
     let (az, bz, cz) = (ray.shear.z * a.z, ray.shear.z * b.z, ray.shear.z * c.z);
-    let z = largest(az, bz, cz);
+    let z = largest([az, bz, cz]);
     let dz = L::splat(error::wide_gamma(12)) * z + underflow * (reach + L::splat(1.0));
     let spread = (az - t).abs() + (bz - t).abs() + (cz - t).abs() + L::splat(3.0) * dz;
     // As `test` computes it.

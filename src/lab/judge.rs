@@ -62,6 +62,12 @@ impl Judge {
         self.rays.len() as u64
     }
 
+    /// Bytes that it holds in memory beside scene and ray set.
+    pub fn bytes(&self) -> u64 {
+        // An index at 8 bytes, a ray at 32 and a hit at 16.
+        self.brute.memory_bytes() + 56 * self.rays.len() as u64
+    }
+
     /// Judges `accel`: its answers to the whole set where it gave them, else it is asked for the checked rays.
     pub fn check(&self, accel: &dyn Accelerator, whole_set: Option<&Answers>) -> Findings {
         let others = match whole_set {

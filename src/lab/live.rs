@@ -21,14 +21,13 @@ const CHEAP_MS: f64 = 100.0;
 /// … and one shorter than this five times.
 const VERY_CHEAP_MS: f64 = 10.0;
 
-/// What all runs of a group share: the same scene, kernel, rays and threads.
+/// What all runs with the same scene, rays and kernel share.
 pub(super) struct Setting<'a> {
     pub plan: &'a Plan,
     pub pools: &'a Pools,
     pub mesh: &'a Arc<Mesh>,
     pub set: &'a Arc<RaySet>,
     pub judge: &'a Judge,
-    pub threads: usize,
 }
 
 /// A run in progress.
@@ -61,7 +60,7 @@ impl Live {
     pub fn prepare(id: String, config: &RunConfig, at: &Setting) -> Result<Self, String> {
         let entry = accel::entry(&config.accel.name).map_err(|why| why.to_string())?;
         let n = resolution(entry, config, at.mesh);
-        let pool = at.pools.of(at.threads);
+        let pool = at.pools.of(config.threads);
         let (accel, build_ms) = build(config, n, at, pool)?;
         let all = at.pools.all();
         let (plan, query) = (at.plan, at.set.query);
@@ -97,7 +96,7 @@ impl Live {
             checked_rays: at.judge.checked_rays(),
             kernel_errors: findings.kernel_errors,
             wrong_answers,
-            warnings: warnings(at, count),
+            warnings: warnings(at, count, config.threads),
         };
         let mut live = Self {
             accel,
@@ -232,7 +231,7 @@ fn build(
 }
 
 /// What is known to a reader's care before the first sample.
-fn warnings(at: &Setting, count: usize) -> Vec<String> {
+fn warnings(at: &Setting, count: usize, threads: usize) -> Vec<String> {
     let mut warnings = at.set.warnings.clone();
     if count < at.set.rays.len() {
         warnings.push(format!(
@@ -240,6 +239,6 @@ fn warnings(at: &Setting, count: usize) -> Vec<String> {
             at.set.rays.len()
         ));
     }
-    warnings.extend(machine::warnings(at.threads));
+    warnings.extend(machine::warnings(threads));
     warnings
 }

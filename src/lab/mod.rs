@@ -9,13 +9,14 @@
 //!
 //! **How it measures.** A sample traces the whole ray set, again and again for at least 20 ms, by methods whose counters
 //! are compiled out. Work is counted in a pass of its own; its answers must be those of the timed passes. Samples of all
-//! runs of a group (same scene, rays, kernel, threads) are interleaved in seeded random order, until the bootstrap
-//! interval of a run's median is narrow enough or its time is spent; the record says which. One pass before the first
-//! sample warms caches and is not kept; all samples are.
+//! runs on the same rays of a scene are interleaved in seeded random order, whatever their kernels and threads, until the
+//! bootstrap interval of a run's median is narrow enough or its time is spent; the record says which. One pass before the
+//! first sample warms caches and is not kept; all samples are.
 //!
 //! **Known biases.** Runs are interleaved, so each sample starts with the caches full of another structure: at 20 ms
 //! a sample that costs a few tenths of a percent. Repeated passes find a small ray set in the cache. The nominal cost that
-//! decides whether a run takes a subset of the rays ignores how fast the machine is.
+//! decides whether a run takes a subset of the rays ignores how fast the machine is; runs that are cut differently are not to
+//! be compared, and a budget may ask for whole sets instead.
 
 mod accuracy;
 mod answers;

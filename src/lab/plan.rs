@@ -53,6 +53,10 @@ pub struct Budget {
     pub run_seconds: f64,
     /// Rays checked against brute force.
     pub checked_rays: usize,
+    /// Whether a sample is the whole set, however long a pass over it takes. Without it a run whose pass would burst its
+    /// time takes a seeded subset, and so has other rays than runs beside it.
+    #[serde(default)]
+    pub whole_sets: bool,
 }
 
 /// One configuration: what a run measures.
@@ -95,6 +99,7 @@ impl Default for Budget {
             relative_half_width: 0.01,
             run_seconds: 2.0,
             checked_rays: 4096,
+            whole_sets: false,
         }
     }
 }
@@ -110,6 +115,7 @@ impl Budget {
             relative_half_width: 0.05,
             run_seconds: 0.25,
             checked_rays: 512,
+            whole_sets: false,
         }
     }
 

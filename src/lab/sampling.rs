@@ -87,6 +87,7 @@ mod tests {
         relative_half_width: 0.05,
         run_seconds: 1.0,
         checked_rays: 1,
+        whole_sets: false,
     };
 
     fn stop(speeds: &[f64], seconds: f64) -> Option<StopReason> {

@@ -35,7 +35,8 @@ pub(super) fn stratified(total: usize, count: usize, seed: u64) -> Vec<usize> {
         .collect()
 }
 
-/// How many of `rays` are traced in a sample: all, or as many as take the share of the budget that a sample has.
+/// How many of `rays` are traced in a sample: as many as take the share of the budget that a sample has; all, where these are
+/// fewer or the budget asks for whole sets.
 pub(super) fn measured(
     accel: &dyn Accelerator,
     query: Query,
@@ -43,6 +44,9 @@ pub(super) fn measured(
     budget: &Budget,
     seed: u64,
 ) -> usize {
+    if budget.whole_sets {
+        return rays.len();
+    }
     let probe: Vec<Ray> = stratified(rays.len(), FEWEST, seed)
         .into_iter()
         .map(|i| rays[i])

@@ -1,7 +1,7 @@
 //! Sweeps: the runs of a plan, measured side by side.
 //!
 //! ```text
-//! plan ──▶ groups: same scene, rays, kernel, threads
+//! plan ──▶ groups: same scene, same rays
 //!             │
 //!             ├─ prepare each run:  build ×k ─ counted pass ─ check against brute force ─ warm-up pass
 //!             │
@@ -10,8 +10,8 @@
 //!
 //! **Source:** samples in random order: T. Mytkowicz et al., "Producing Wrong Data Without Doing Anything Obviously
 //! Wrong!", ASPLOS 2009; a slow stretch of the machine then falls on all configurations alike.
-//! **Differs:** structures of a group stand in memory together as long as they stay within the plan's memory limit; the
-//! next ones are prepared when these are done.
+//! **Differs:** structures of a group stand in memory together as long as they stay within the plan's memory limit, with
+//! what checks them; the next ones are prepared when these are done.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -21,6 +21,7 @@ use rand_core::Rng;
 use rand_pcg::Pcg32;
 
 use crate::oracle::Oracle;
+use crate::registry::Choice;
 use crate::scene::{self, Scene};
 use crate::trace::{self, RaySet};
 
@@ -95,9 +96,8 @@ pub fn sweep_from(
         sink,
     };
     (sweep.sink)(Event::Started { runs: runs.clone() });
-    let mut shared = Shared::default();
     for group in runs.chunk_by(|(_, a), (_, b)| same_group(a, b)) {
-        sweep.group(group, &scenes[&group[0].1.scene], &mut shared);
+        sweep.group(group, &scenes[&group[0].1.scene]);
     }
     let stopped = sweep.complete < runs.len();
     (sweep.sink)(Event::Ended { stopped });
@@ -105,7 +105,7 @@ pub fn sweep_from(
 }
 
 fn same_group(a: &RunConfig, b: &RunConfig) -> bool {
-    (&a.scene, &a.rays, &a.kernel, a.threads) == (&b.scene, &b.rays, &b.kernel, b.threads)
+    (&a.scene, &a.rays) == (&b.scene, &b.rays)
 }
 
 /// A loaded scene with its oracle.
@@ -121,11 +121,27 @@ impl Stage {
     }
 }
 
-/// What groups that follow each other share: the ray set, and the answers of brute force to it.
-#[derive(Default)]
-struct Shared {
-    set: Option<(String, Arc<RaySet>)>,
-    judge: Option<(String, Judge)>,
+/// What the runs of a group share.
+struct Course<'a> {
+    stage: &'a Stage,
+    set: Arc<RaySet>,
+    /// Of the kernel that was asked for last.
+    judge: Option<(Choice, Arc<Judge>)>,
+}
+
+/// A run that takes its turns at being sampled.
+struct Turn {
+    run: Live,
+    /// Shared by all runs with the same kernel.
+    judge: Arc<Judge>,
+}
+
+/// Bytes that runs hold in memory, with what checks them.
+fn bytes(turns: &[Turn]) -> u64 {
+    turns
+        .chunk_by(|a, b| Arc::ptr_eq(&a.judge, &b.judge))
+        .map(|same| same[0].judge.bytes() + same.iter().map(|turn| turn.run.bytes()).sum::<u64>())
+        .sum()
 }
 
 struct Sweep<'a> {
@@ -142,13 +158,12 @@ struct Sweep<'a> {
 
 impl Sweep<'_> {
     /// Makes all runs of a group.
-    fn group(&mut self, runs: &[(String, RunConfig)], stage: &Stage, shared: &mut Shared) {
+    fn group(&mut self, runs: &[(String, RunConfig)], stage: &Stage) {
         if !self.control.may_go_on() {
             return;
         }
-        let first = &runs[0].1;
-        let (set, judge) = match self.share(first, stage, shared) {
-            Ok(shared) => shared,
+        let set = match self.rays(&runs[0].1, &stage.scene) {
+            Ok(set) => Arc::new(set),
             Err(why) => {
                 for (id, _) in runs {
                     self.fail(id, why.clone(), 0.0);
@@ -156,60 +171,46 @@ impl Sweep<'_> {
                 return;
             }
         };
-        let setting = Setting {
-            plan: self.plan,
-            pools: self.pools,
-            mesh: &stage.scene.mesh,
-            set: &set,
-            judge,
-            threads: first.threads,
+        let mut course = Course {
+            stage,
+            set,
+            judge: None,
         };
         let mut waiting = runs.iter();
-        loop {
-            let live = self.prepare(&mut waiting, &setting);
-            if live.is_empty() {
-                return;
-            }
-            self.sample(live, &setting);
+        while waiting.len() > 0 && self.control.may_go_on() {
+            let turns = self.prepare(&mut waiting, &mut course);
+            self.sample(turns);
         }
     }
 
-    /// The ray set of a group and the answers of brute force to it, made anew where the last group had others.
-    fn share<'s>(
-        &self,
-        run: &RunConfig,
-        stage: &Stage,
-        shared: &'s mut Shared,
-    ) -> Result<(Arc<RaySet>, &'s Judge), String> {
-        let key = format!("{}\n{}", run.scene, run.rays);
-        if shared.set.as_ref().is_none_or(|(of, _)| *of != key) {
-            shared.judge = None;
-            let made = self
-                .pools
-                .all()
-                .install(|| trace::ray_set(&stage.scene, &run.rays, run.ray_count, run.seed));
-            let set = made.map_err(|why| why.to_string())?;
-            shared.set = Some((key, Arc::new(set)));
-        }
-        let set = shared.set.as_ref().map(|(_, set)| Arc::clone(set));
-        let set = set.filter(|set| !set.rays.is_empty()).ok_or_else(|| {
+    /// The ray set of a group, which has at least one ray.
+    fn rays(&self, run: &RunConfig, scene: &Scene) -> Result<RaySet, String> {
+        let all = self.pools.all();
+        let made = all.install(|| trace::ray_set(scene, &run.rays, run.ray_count, run.seed));
+        let set = made.map_err(|why| why.to_string())?;
+        if set.rays.is_empty() {
             let (rays, scene) = (&run.rays, &run.scene);
-            format!("the ray set '{rays}' of '{scene}' has no rays: choose another set or scene")
-        })?;
-        let key = serde_json::to_string(&run.kernel).unwrap_or_default();
-        if shared.judge.as_ref().is_none_or(|(of, _)| *of != key) {
-            let (mesh, oracle) = (&stage.scene.mesh, &stage.oracle);
-            let (budget, seed) = (&self.plan.budget, self.plan.seed);
-            let made = self
-                .pools
-                .all()
-                .install(|| Judge::new(mesh, oracle, &run.kernel, &set, budget, seed));
-            shared.judge = Some((key, made.map_err(|why| why.to_string())?));
+            return Err(format!(
+                "the ray set '{rays}' of '{scene}' has no rays: choose another set or scene"
+            ));
         }
-        match &shared.judge {
-            Some((_, judge)) => Ok((set, judge)),
-            None => Err("brute force could not be traced".to_owned()),
+        Ok(set)
+    }
+
+    /// The answers of brute force with `kernel`, made anew where the last run had another.
+    fn judge(&self, course: &mut Course, kernel: &Choice) -> Result<Arc<Judge>, String> {
+        if let Some((of, judge)) = &course.judge
+            && of == kernel
+        {
+            return Ok(Arc::clone(judge));
         }
+        let (mesh, oracle) = (&course.stage.scene.mesh, &course.stage.oracle);
+        let (budget, seed) = (&self.plan.budget, self.plan.seed);
+        let all = self.pools.all();
+        let made = all.install(|| Judge::new(mesh, oracle, kernel, &course.set, budget, seed));
+        let judge = Arc::new(made.map_err(|why| why.to_string())?);
+        course.judge = Some((kernel.clone(), Arc::clone(&judge)));
+        Ok(judge)
     }
 
     /// Prepares waiting runs until their structures reach the memory limit; none where none is left or the sweep is
@@ -217,17 +218,30 @@ impl Sweep<'_> {
     fn prepare<'r>(
         &mut self,
         waiting: &mut impl Iterator<Item = &'r (String, RunConfig)>,
-        setting: &Setting,
-    ) -> Vec<Live> {
-        let mut live: Vec<Live> = Vec::new();
-        let mut bytes = 0;
-        while bytes < self.plan.memory_limit && self.control.may_go_on() {
+        course: &mut Course,
+    ) -> Vec<Turn> {
+        let mut turns: Vec<Turn> = Vec::new();
+        while bytes(&turns) < self.plan.memory_limit && self.control.may_go_on() {
             let Some((id, config)) = waiting.next() else {
                 break;
             };
+            let judge = match self.judge(course, &config.kernel) {
+                Ok(judge) => judge,
+                Err(why) => {
+                    self.fail(id, why, 0.0);
+                    continue;
+                }
+            };
             (self.sink)(Event::Building { id: id.clone() });
             let start = Instant::now();
-            let prepared = Live::prepare(id.clone(), config, setting);
+            let setting = Setting {
+                plan: self.plan,
+                pools: self.pools,
+                mesh: &course.stage.scene.mesh,
+                set: &course.set,
+                judge: &judge,
+            };
+            let prepared = Live::prepare(id.clone(), config, &setting);
             let seconds = start.elapsed().as_secs_f64();
             match prepared {
                 Ok(mut run) => {
@@ -236,38 +250,38 @@ impl Sweep<'_> {
                         run.resumed = speeds.len();
                     }
                     self.estimate.prepared(seconds);
-                    bytes += run.bytes();
                     let record = Box::new(run.record.clone());
                     (self.sink)(Event::Built { record });
-                    live.push(run);
+                    turns.push(Turn { run, judge });
                 }
                 Err(why) => self.fail(id, why, seconds),
             }
         }
-        live
+        turns
     }
 
     /// Takes samples of all runs in turn until each is sampled enough.
-    fn sample(&mut self, mut live: Vec<Live>, setting: &Setting) {
+    fn sample(&mut self, mut live: Vec<Turn>) {
         while !live.is_empty() {
             self.shuffle(&mut live);
-            let mut turns: Vec<Option<Live>> = live.into_iter().map(Some).collect();
+            let mut turns: Vec<Option<Turn>> = live.into_iter().map(Some).collect();
             for turn in 0..turns.len() {
-                let Some(run) = &mut turns[turn] else {
+                let Some(Turn { run, judge }) = &mut turns[turn] else {
                     continue;
                 };
-                let Some(speed) = self.take_sample(run, setting) else {
+                let Some(speed) = self.take_sample(run, judge) else {
                     return;
                 };
                 run.speeds.push(speed);
                 let id = run.record.id.clone();
                 let budget = &self.plan.budget;
                 let stop = stop_reason(&run.speeds, run.seconds, budget, self.plan.seed);
-                let complete = stop.and_then(|reason| Some((turns[turn].take()?, reason)));
+                let complete = stop.and_then(|reason| Some((turns[turn].take()?.run, reason)));
                 if let Some((run, _)) = &complete {
                     self.estimate.complete(run.seconds);
                 }
-                let spent: Vec<f64> = turns.iter().flatten().map(|run| run.seconds).collect();
+                let going = turns.iter().flatten();
+                let spent: Vec<f64> = going.map(|turn| turn.run.seconds).collect();
                 let (done, seconds_left) = self.estimate.tell(&spent);
                 (self.sink)(Event::Sampled {
                     id,
@@ -284,8 +298,8 @@ impl Sweep<'_> {
     }
 
     /// Takes one sample, again where something disturbed it; its speed, or `None` when the sweep is stopped.
-    fn take_sample(&mut self, run: &mut Live, setting: &Setting) -> Option<f64> {
-        let pool = setting.pools.of(setting.threads);
+    fn take_sample(&mut self, run: &mut Live, judge: &Judge) -> Option<f64> {
+        let pool = self.pools.of(run.record.config.threads);
         for attempt in 0..=RETAKES {
             if !self.control.may_go_on() {
                 return None;
@@ -295,7 +309,7 @@ impl Sweep<'_> {
             let (speed, seconds) = run.time(pool, self.plan.budget.sample_seconds);
             self.control.set_sampling(false);
             run.seconds += seconds;
-            run.check_room(setting.judge);
+            run.check_room(judge);
             if self.control.disturbances() == before {
                 return Some(speed);
             }

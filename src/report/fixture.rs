@@ -118,6 +118,7 @@ pub fn run_of(
         checked_rays: 4_096,
         kernel_errors: 0,
         wrong_answers: None,
+        sweep: None,
         accuracy: None,
         warnings: Vec::new(),
     }
@@ -211,6 +212,7 @@ pub fn report(runs: Vec<Run>) -> Report {
                 relative_half_width: 0.02,
                 run_seconds: 2.0,
                 checked_rays: 4_096,
+                whole_sets: false,
             },
             memory_limit: 1 << 32,
         },

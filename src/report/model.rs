@@ -171,6 +171,10 @@ pub struct Run {
     /// answers must obey the rule.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wrong_answers: Option<u64>,
+    /// Where a report joins several sweeps: which of them made the run. Samples of runs of one sweep on the same rays of a
+    /// scene were interleaved.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sweep: Option<u32>,
     /// How often the kernel was wrong by the oracle, where that was measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub accuracy: Option<Accuracy>,

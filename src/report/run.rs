@@ -62,6 +62,7 @@ impl From<&RunRecord> for Run {
             checked_rays: record.checked_rays,
             kernel_errors: record.kernel_errors,
             wrong_answers: record.wrong_answers,
+            sweep: None,
             accuracy: None,
             warnings: record.warnings.clone(),
         }

@@ -76,8 +76,7 @@ impl Work {
 pub struct Bundle<'a, L> {
     /// From one to [`MOST`] of them.
     pub rays: &'a [Ray],
-    /// A vector each sixteen. Lanes that are left repeat the last ray, with a `t_max` of negative infinity.
-    lanes: [RayLanes<L>; VECTORS],
+    lanes: [Beams<L>; VECTORS],
     /// Least and greatest components of the directions.
     pub interval: [Vec3; 2],
     /// Least and greatest of the largest components.
@@ -88,6 +87,29 @@ pub struct Bundle<'a, L> {
     t_max: f32,
     /// Whether all origins are the same, bit for bit. Where not, nothing else holds.
     pub share_origin: bool,
+}
+
+/// Sixteen rays without the origin that they share. Lanes that are left repeat the last ray, with a `t_max` of negative
+/// infinity.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Beams<L> {
+    pub dirs: LaneVec3<L>,
+    pub t_min: L,
+    pub t_max: L,
+}
+
+/// The rays of a vector, and whether all begin at `origin`, bit for bit.
+#[inline(always)]
+fn beams<I: Isa>(rays: &[Ray], vector: usize, origin: LaneVec3<I::Rays>) -> (Beams<I::Rays>, bool) {
+    let lanes = lanes::<I>(rays, vector);
+    let own = &lanes.lines.origin;
+    let same = own.x.same_bits(origin.x) & own.y.same_bits(origin.y) & own.z.same_bits(origin.z);
+    let beams = Beams {
+        dirs: lanes.lines.dir,
+        t_min: lanes.t_min,
+        t_max: lanes.t_max,
+    };
+    (beams, same.bits() == 0xffff)
 }
 
 /// The rays of a vector: sixteen, or those that are left.
@@ -114,25 +136,21 @@ impl<'a, L: Lane<1>> Bundle<'a, L> {
     /// Of from one to [`MOST`] rays.
     #[inline(always)]
     pub fn new<I: Isa<Rays = L>>(rays: &'a [Ray]) -> Self {
-        let of = lanes::<I>;
-        let last = (rays.len() - 1) / VECTOR;
-        let first = of(rays, 0);
-        let all = if last == 0 {
-            [first; VECTORS]
-        } else {
-            [first, of(rays, 1), of(rays, last.min(2)), of(rays, last)]
-        };
-        let lead = first.lines.origin;
-        let (mut least, mut greatest) = (first.lines.dir, first.lines.dir);
-        let mut longest = [size(&least), size(&least)];
+        let origin = LaneVec3::splat(rays[0].origin);
+        let (first, mut alike) = beams::<I>(rays, 0, origin);
+        let mut all = [first; VECTORS];
+        let (mut least, mut greatest) = (first.dirs, first.dirs);
+        let mut longest = [least.largest(); 2];
         let (mut t_min, mut t_max) = (first.t_min, first.t_max);
-        let mut alike = is_everywhere(&first, LaneVec3::splat(rays[0].origin));
-        for of in &all[1..=last] {
-            alike &= is_everywhere(of, lead);
-            let dir = &of.lines.dir;
-            least = each(&least, dir, L::min);
-            greatest = each(&greatest, dir, L::max);
-            longest = [longest[0].min(size(dir)), longest[1].max(size(dir))];
+        let vectors = rays.len().div_ceil(VECTOR);
+        for (vector, of) in all.iter_mut().enumerate().take(vectors).skip(1) {
+            let same;
+            (*of, same) = beams::<I>(rays, vector, origin);
+            alike &= same;
+            least = each(&least, &of.dirs, L::min);
+            greatest = each(&greatest, &of.dirs, L::max);
+            let size = of.dirs.largest();
+            longest = [longest[0].min(size), longest[1].max(size)];
             (t_min, t_max) = (t_min.min(of.t_min), t_max.max(of.t_max));
         }
         Self {
@@ -163,25 +181,11 @@ impl<'a, L: Lane<1>> Bundle<'a, L> {
     #[inline(always)]
     pub fn suits<K: Kernel>(&self) -> bool {
         let mut suits = K::PACKETS;
-        for lanes in &self.lanes[..self.vectors()] {
-            suits &= K::same_frame(&self.rays[0], &lanes.lines.dir);
+        for beams in &self.lanes[..self.vectors()] {
+            suits &= K::same_frame(&self.rays[0], &beams.dirs);
         }
         suits
     }
-}
-
-/// Whether all rays begin at `origin`, bit for bit.
-#[inline(always)]
-fn is_everywhere<L: Lane<1>>(lanes: &RayLanes<L>, origin: LaneVec3<L>) -> bool {
-    let own = &lanes.lines.origin;
-    let same = own.x.same_bits(origin.x) & own.y.same_bits(origin.y) & own.z.same_bits(origin.z);
-    same.bits() == 0xffff
-}
-
-/// The largest component.
-#[inline(always)]
-fn size<L: Lane<1>>(dir: &LaneVec3<L>) -> L {
-    dir.x.abs().max(dir.y.abs()).max(dir.z.abs())
 }
 
 /// `choose` of each component.
@@ -263,14 +267,14 @@ impl<'a, 'p, T: Items, K: Kernel, I: Isa> Packet<'a, 'p, T, K, I> {
     ) {
         let (bundle, packed) = (self.bundle, self.packed);
         if self.vectors.is_empty() {
-            for lanes in &bundle.lanes[..bundle.vectors()] {
-                let vector = Vector::new(&packed.kernel, &bundle.rays[0], lanes);
+            for beams in &bundle.lanes[..bundle.vectors()] {
+                let vector = Vector::new(&packed.kernel, &bundle.rays[0], beams);
                 self.vectors.push(vector);
             }
         }
         let mut limit = f32::NEG_INFINITY;
         for (vector, of) in self.vectors.iter_mut().enumerate() {
-            let dirs = &bundle.lanes[vector].lines.dir;
+            let dirs = &bundle.lanes[vector].dirs;
             let mut rest = met;
             let mut any = false;
             while rest != 0 {

@@ -1,11 +1,12 @@
 //! Sixteen rays of a packet and their answers so far, a lane each.
 
-use crate::geometry::lanes::{HitLanes, Isa, Lane, LaneMask, RayLanes, SIXTEEN};
+use crate::geometry::lanes::{HitLanes, Isa, Lane, LaneMask, LaneRay, LaneVec3, SIXTEEN};
 use crate::geometry::{Hit, Ray};
 use crate::kernel::{Kernel, LaneHit};
 
 use super::super::items::Items;
 use super::super::query::{self, Packed};
+use super::Beams;
 
 /// The rays, as the kernel reads them, and what is known of each.
 pub struct Vector<K: Kernel, I: Isa> {
@@ -22,16 +23,20 @@ pub struct Vector<K: Kernel, I: Isa> {
 }
 
 impl<K: Kernel, I: Isa> Vector<K, I> {
-    /// The rays in `lanes`, of which `lead` is one.
+    /// The rays of `beams`, which begin where `lead` does.
     #[inline(always)]
-    pub fn new(kernel: &K, lead: &Ray, lanes: &RayLanes<I::Rays>) -> Self {
+    pub(super) fn new(kernel: &K, lead: &Ray, beams: &Beams<I::Rays>) -> Self {
+        let lines = LaneRay {
+            origin: LaneVec3::splat(lead.origin),
+            dir: beams.dirs,
+        };
         Self {
-            prepared: kernel.prepare(lead, &lanes.lines),
-            t_min: lanes.t_min,
-            t_max: lanes.t_max,
+            prepared: kernel.prepare(lead, &lines),
+            t_min: beams.t_min,
+            t_max: beams.t_max,
             best: HitLanes::misses(),
-            limit: lanes.t_max,
-            farthest: lanes.t_max.greatest(),
+            limit: beams.t_max,
+            farthest: beams.t_max.greatest(),
         }
     }
 

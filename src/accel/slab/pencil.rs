@@ -6,17 +6,16 @@ use crate::geometry::{Aabb, Vec3};
 use super::super::packet::Bundle;
 use super::{CONE, Clip, WideCorners, is_trusted, reach};
 
-/// What the slabs of rays with a common origin have in common: bounds on the reciprocals of their directions.
+/// The slabs of rays from one octant with a common origin, plane by plane.
 #[derive(Debug, Clone, Copy)]
 pub(in super::super) struct Pencil {
+    axes: [Axis<f32>; 3],
     /// Where the rays begin.
     pub origin: Vec3,
     /// Least and greatest components of the directions.
     pub dirs: [Vec3; 2],
     /// The greatest component of all.
     pub longest: f32,
-    near_inverse: [Vec3; 2],
-    far_inverse: [Vec3; 2],
     /// Which side the rays come from along each axis: 1 where their directions are negative.
     pub near: [u32; 3],
     /// Least of the rays.
@@ -51,39 +50,38 @@ fn are_trusted<R: Lane<1>>(bundle: &Bundle<R>, reach: f32) -> bool {
         && is_trusted(lead, longest, reach)
 }
 
+/// The rays of `bundle` along each axis; `None` where one is not plain.
+#[inline(always)]
+fn axes<R: Lane<1>, const W: usize, L: Lane<W>>(
+    bundle: &Bundle<R>,
+    scene: &Aabb,
+) -> Option<[Axis<L>; 3]> {
+    let lead = &bundle.rays[0];
+    let reach = reach(lead, scene);
+    if !are_trusted(bundle, reach) {
+        return None;
+    }
+    let (origin, (sign, [small, large])) = (lead.origin, sizes(bundle));
+    let longest = bundle.longest;
+    Some([
+        Axis::new(origin.x, sign.x, [small.x, large.x], longest, reach),
+        Axis::new(origin.y, sign.y, [small.y, large.y], longest, reach),
+        Axis::new(origin.z, sign.z, [small.z, large.z], longest, reach),
+    ])
+}
+
 impl Pencil {
     /// Of the rays of `bundle`; `None` where their directions differ in a sign or a ray is not plain.
     #[inline(always)]
     pub fn new<R: Lane<1>>(bundle: &Bundle<R>, scene: &Aabb) -> Option<Self> {
-        let lead = &bundle.rays[0];
-        let (sign, [small, large]) = sizes(bundle);
-        let [shortest, longest] = bundle.longest;
-        // What a rounding of the width leaves, for every ray of the bundle.
-        let is_plain = small.min_element() > thin(longest);
-        if !is_plain || !are_trusted(bundle, reach(lead, scene)) {
-            return None;
-        }
-        // Each ray's own lie between: every step of the way to them is monotone.
-        let (narrow, wide) = (CONE * shortest, CONE * longest);
-        let near = [
-            (large + wide).recip() * sign,
-            (small + narrow).recip() * sign,
-        ];
-        let far = [
-            (large - narrow).recip() * sign,
-            (small - wide).recip() * sign,
-        ];
-        Some(Self {
-            origin: lead.origin,
+        let axes: [Axis<f32>; 3] = axes(bundle, scene)?;
+        let [x, y, z] = &axes;
+        (!(x.both | y.both | z.both)).then_some(Self {
+            near: [x.side as u32, y.side as u32, z.side as u32],
+            axes,
+            origin: bundle.rays[0].origin,
             dirs: bundle.interval,
-            longest,
-            near_inverse: near,
-            far_inverse: far,
-            near: [
-                u32::from(sign.x < 0.0),
-                u32::from(sign.y < 0.0),
-                u32::from(sign.z < 0.0),
-            ],
+            longest: bundle.longest[1],
             t_min: bundle.t_min,
         })
     }
@@ -91,15 +89,13 @@ impl Pencil {
     /// Earliest `t` beyond the plane where `axis` is `plane` over all rays.
     #[inline(always)]
     pub fn enter(&self, axis: usize, plane: f32) -> f32 {
-        let way = plane - self.origin[axis];
-        (way * self.near_inverse[0][axis]).min(way * self.near_inverse[1][axis])
+        self.axes[axis].earliest(plane)
     }
 
     /// Latest `t` before it over all rays.
     #[inline(always)]
     pub fn leave(&self, axis: usize, plane: f32) -> f32 {
-        let way = plane - self.origin[axis];
-        (way * self.far_inverse[0][axis]).max(way * self.far_inverse[1][axis])
+        self.axes[axis].latest(plane)
     }
 }
 
@@ -129,23 +125,28 @@ struct Axis<L> {
     side: usize,
     /// Where they begin; where they run in both directions, as far towards the slab as one that is called parallel may be.
     origin: [L; 2],
-    /// Least and greatest reciprocals.
+    /// Reciprocals of the fastest and of the slowest, each the bound of what a ray's own may be.
     near: [L; 2],
     far: [L; 2],
 }
 
-impl<L: Lane<8>> Axis<L> {
-    /// Of rays with components from `small` to `large` in the direction of `sign`; `narrow` and `wide` are the least and the
-    /// greatest width of their cones.
+impl<L> Axis<L> {
+    /// Of rays with components from `small` to `large` in the direction of `sign`, whose longest components are from
+    /// `shortest` to `longest`.
     #[inline(always)]
-    fn new(
+    fn new<const W: usize>(
         origin: f32,
         sign: f32,
         [small, large]: [f32; 2],
-        [narrow, wide]: [f32; 2],
+        [shortest, longest]: [f32; 2],
         reach: f32,
-    ) -> Self {
-        let both = small <= 2.0 * wide;
+    ) -> Self
+    where
+        L: Lane<W>,
+    {
+        let (narrow, wide) = (CONE * shortest, CONE * longest);
+        // The width is rounded, for every ray of the bundle.
+        let both = small <= thin(longest);
         let (origins, near, far) = if both {
             let (down, up) = (small.min(0.0) - wide, large.max(0.0) + wide);
             let (up, down) = if sign < 0.0 { (-down, -up) } else { (up, down) };
@@ -157,11 +158,11 @@ impl<L: Lane<8>> Axis<L> {
                 [0.0; 2],
             )
         } else {
-            let bounds = |a: f32, b: f32| [(sign / a).min(sign / b), (sign / a).max(sign / b)];
+            // Each ray's own lie between: every step of the way to them is monotone.
             (
                 [origin; 2],
-                bounds(large + wide, small + narrow),
-                bounds(large - narrow, small - wide),
+                [sign / (large + wide), sign / (small + narrow)],
+                [sign / (large - narrow), sign / (small - wide)],
             )
         };
         let splat = |[a, b]: [f32; 2]| [L::splat(a), L::splat(b)];
@@ -174,6 +175,28 @@ impl<L: Lane<8>> Axis<L> {
         }
     }
 
+    /// Earliest `t` beyond a plane over all rays, if they run in one direction.
+    #[inline(always)]
+    fn earliest<const W: usize>(&self, plane: L) -> L
+    where
+        L: Lane<W>,
+    {
+        let way = plane - self.origin[0];
+        (way * self.near[0]).min(way * self.near[1])
+    }
+
+    /// Latest `t` before it.
+    #[inline(always)]
+    fn latest<const W: usize>(&self, plane: L) -> L
+    where
+        L: Lane<W>,
+    {
+        let way = plane - self.origin[0];
+        (way * self.far[0]).max(way * self.far[1])
+    }
+}
+
+impl<L: Lane<8>> Axis<L> {
     /// Earliest entry into a slab over all rays.
     #[inline(always)]
     fn enter(&self, slab: &[[f32; 8]; 2]) -> L {
@@ -182,8 +205,7 @@ impl<L: Lane<8>> Axis<L> {
             let below = (L::load(&slab[1]) - self.origin[1]) * self.near[1];
             return above.max(below);
         }
-        let way = L::load(&slab[self.side & 1]) - self.origin[0];
-        (way * self.near[0]).min(way * self.near[1])
+        self.earliest(L::load(&slab[self.side & 1]))
     }
 
     /// Latest exit from it over all rays, if not later than `last`.
@@ -192,8 +214,7 @@ impl<L: Lane<8>> Axis<L> {
         if self.both {
             return last;
         }
-        let way = L::load(&slab[self.side & 1 ^ 1]) - self.origin[0];
-        (way * self.far[0]).max(way * self.far[1])
+        self.latest(L::load(&slab[self.side & 1 ^ 1]))
     }
 }
 
@@ -201,20 +222,8 @@ impl<L: Lane<8>> PacketSlabs<L> {
     /// Of the rays of `bundle`; `None` where one is not plain.
     #[inline(always)]
     pub fn new<R: Lane<1>>(bundle: &Bundle<R>, scene: &Aabb) -> Option<Self> {
-        let lead = &bundle.rays[0];
-        let reach = reach(lead, scene);
-        if !are_trusted(bundle, reach) {
-            return None;
-        }
-        let (sign, [small, large]) = sizes(bundle);
-        let widths = bundle.longest.map(|longest| CONE * longest);
-        let origin = lead.origin;
         Some(Self {
-            axes: [
-                Axis::new(origin.x, sign.x, [small.x, large.x], widths, reach),
-                Axis::new(origin.y, sign.y, [small.y, large.y], widths, reach),
-                Axis::new(origin.z, sign.z, [small.z, large.z], widths, reach),
-            ],
+            axes: axes(bundle, scene)?,
             t_min: L::splat(bundle.t_min),
         })
     }

@@ -24,11 +24,9 @@ impl<L: Lane<1>> SlabRays<L> {
     #[inline(always)]
     pub fn new(rays: &RayLanes<L>, near: [usize; 3], scene: &Scene) -> (Self, u32) {
         let (origin, dir, t_min) = (&rays.lines.origin, &rays.lines.dir, rays.t_min);
-        let size = [dir.x.abs(), dir.y.abs(), dir.z.abs()];
-        let longest = size[0].max(size[1]).max(size[2]);
-        let shortest = size[0].min(size[1]).min(size[2]);
-        let farthest = origin.x.abs().max(origin.y.abs()).max(origin.z.abs());
-        let is_plain = is_plain([shortest, longest], farthest, t_min, scene);
+        let shortest = dir.x.abs().min(dir.y.abs()).min(dir.z.abs());
+        let longest = dir.largest();
+        let is_plain = is_plain([shortest, longest], origin.largest(), t_min, scene);
         let width = longest * L::splat(CONE);
         let (x, x_offset) = Self::axis(origin.x, dir.x, width);
         let (y, y_offset) = Self::axis(origin.y, dir.y, width);

@@ -228,31 +228,13 @@ impl Task for Together<'_> {
     }
 }
 
-#[test]
-fn a_packet_meets_what_one_of_its_rays_touches() {
-    let mut dice = Dice::new(7);
+/// 20,000 boxes, each with the rays of a packet that `make` gives beside it: they have one origin.
+fn packets_never_miss(seed: u64, make: impl Fn(&mut Dice) -> Vec<Case>) {
+    let mut dice = Dice::new(seed);
     let (mut met, mut missed) = (0, 0);
     for _ in 0..20_000 {
-        let (a, b) = (numbers(&mut dice, 1 << 12), numbers(&mut dice, 1 << 12));
-        let lead = Case {
-            origin: numbers(&mut dice, 1 << 13),
-            // Nearly across an axis as often as not, so that signs differ within a packet.
-            dir: numbers(&mut dice, 1 << 10).map(|d| if dice.below(2) == 0 { d } else { d >> 7 }),
-            least: [0, 1, 2].map(|i: usize| a[i].min(b[i])),
-            greatest: [0, 1, 2].map(|i: usize| a[i].max(b[i])),
-        };
-        let spread = [1, 16, 128][dice.below(3) as usize];
-        let cases: Vec<Case> = (0..=dice.below(20))
-            .map(|_| {
-                let [x, y, z] = numbers(&mut dice, spread);
-                let [dx, dy, dz] = lead.dir;
-                Case {
-                    dir: [dx + x, dy + y, dz + z],
-                    ..lead
-                }
-            })
-            .filter(|case| case.dir != [0; 3])
-            .collect();
+        let mut cases = make(&mut dice);
+        cases.retain(|case| case.dir != [0; 3]);
         if cases.is_empty() {
             continue;
         }
@@ -269,6 +251,69 @@ fn a_packet_meets_what_one_of_its_rays_touches() {
         }
     }
     assert!(met > 1000 && missed > 1000, "{met} met, {missed} missed");
+}
+
+/// The case for each ray of a packet: `lead` with directions that differ from its own by what `apart` gives.
+fn packet(dice: &mut Dice, lead: Case, apart: impl Fn(&mut Dice) -> [i64; 3]) -> Vec<Case> {
+    (0..=dice.below(20))
+        .map(|_| {
+            let apart = apart(dice);
+            Case {
+                dir: [0, 1, 2].map(|i: usize| lead.dir[i] + apart[i]),
+                ..lead
+            }
+        })
+        .collect()
+}
+
+#[test]
+fn a_packet_meets_what_one_of_its_rays_touches() {
+    packets_never_miss(7, |dice| {
+        let (a, b) = (numbers(dice, 1 << 12), numbers(dice, 1 << 12));
+        let lead = Case {
+            origin: numbers(dice, 1 << 13),
+            // Nearly across an axis as often as not, so that signs differ within a packet.
+            dir: numbers(dice, 1 << 10).map(|d| if dice.below(2) == 0 { d } else { d >> 7 }),
+            least: [0, 1, 2].map(|i: usize| a[i].min(b[i])),
+            greatest: [0, 1, 2].map(|i: usize| a[i].max(b[i])),
+        };
+        let spread = [1, 16, 128][dice.below(3) as usize];
+        packet(dice, lead, |dice| numbers(dice, spread))
+    });
+}
+
+#[test]
+fn a_packet_meets_what_rays_touch_that_run_in_a_face_but_for_less_than_their_cone() {
+    // A component of 8 along one axis is a cone's width at 2^23 along another.
+    let far = 1 << 23;
+    packets_never_miss(8, |dice| {
+        let [thin, long, wide] = [[0, 1, 2], [1, 2, 0], [2, 0, 1]][dice.below(3) as usize];
+        let origin = numbers(dice, 1 << 20);
+        let mut lead = Case {
+            origin,
+            dir: numbers(dice, 1 << 21),
+            least: [-far; 3],
+            greatest: [far; 3],
+        };
+        lead.dir[thin] = number(dice, 16);
+        lead.dir[long] = far;
+        // A slab beside the origin, by no more than the rays drift on their way through the scene.
+        lead.least[thin] = origin[thin] + number(dice, 8);
+        lead.greatest[thin] = lead.least[thin] + i64::from(dice.below(4));
+        lead.least[long] = number(dice, 1 << 22);
+        lead.greatest[wide] = number(dice, 1 << 22);
+        let mut cases = packet(dice, lead, |dice| {
+            let mut apart = numbers(dice, 1 << 16);
+            apart[thin] = number(dice, 4);
+            apart
+        });
+        if dice.below(2) == 0 {
+            for case in &mut cases {
+                case.dir[long] = -case.dir[long];
+            }
+        }
+        cases
+    });
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Eight lanes in one register of AVX2.
 //!
-//! Made only inside [`super::Isa::run`], which is entered after the processor was asked; see [`super::isa`].
+//! Made only inside [`super::InstructionSet::run`], which is entered after the processor was asked; see [`super::isa`].
 
 #![expect(
     unsafe_code,

@@ -1,6 +1,6 @@
 //! Eight and sixteen lanes in registers of AVX-512, with masks in mask registers.
 //!
-//! Made only inside [`super::Isa::run`], which is entered after the processor was asked; see [`super::isa`].
+//! Made only inside [`super::InstructionSet::run`], which is entered after the processor was asked; see [`super::isa`].
 
 #![expect(
     unsafe_code,

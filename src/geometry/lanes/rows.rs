@@ -9,7 +9,7 @@
 //! Quarters of a register hold four numbers of a ray each; four registers of quarters are transposed by eight shuffles,
 //! where loads of single numbers would take as many as there are numbers.
 
-use super::{Isa, Lane, LaneRay, LaneVec3};
+use super::{Isa, Lane, LaneRay};
 use crate::geometry::{Hit, Ray};
 
 /// Rays of a vector: as many as [`Isa::Rays`] has lanes.
@@ -41,9 +41,10 @@ pub struct HitLanes<L> {
 
 impl<L> RayLanes<L> {
     /// From the columns of the rays' rows.
+    #[cfg(all(target_arch = "x86_64", not(debug_assertions)))]
     #[inline(always)]
     pub(super) fn of_columns([ox, oy, oz, t_min]: [L; 4], [dx, dy, dz, t_max]: [L; 4]) -> Self {
-        let vector = |x, y, z| LaneVec3 { x, y, z };
+        let vector = |x, y, z| super::LaneVec3 { x, y, z };
         Self {
             lines: LaneRay {
                 origin: vector(ox, oy, oz),

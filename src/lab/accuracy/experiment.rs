@@ -160,10 +160,7 @@ impl Experiment<'_> {
     fn on_course(&mut self, course: &Course, runs: &[PlacedRun]) {
         let mut live: Vec<(Live, Accuracy)> = Vec::new();
         let mut bytes = 0;
-        let same_kernel = |a: &PlacedRun, b: &PlacedRun| {
-            a.config.kernel == b.config.kernel && a.config.threads == b.config.threads
-        };
-        for same in runs.chunk_by(same_kernel) {
+        for same in runs.chunk_by(|a, b| a.config.kernel == b.config.kernel) {
             let shared = match self.share(course, &same[0].config) {
                 Ok(shared) => shared,
                 Err(why) => {
@@ -224,7 +221,6 @@ impl Experiment<'_> {
             mesh: &stage.scene.mesh,
             set: &course.set,
             judge: &shared.judge,
-            threads: config.threads,
         };
         let mut live = Live::prepare(run.id.clone(), config, &setting)?;
         if let Some(speeds) = self.done.samples.get(&run.id) {

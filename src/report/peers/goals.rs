@@ -4,7 +4,7 @@ use crate::report::series::{PanelKey, accel_label};
 use crate::report::{Report, Run};
 
 use super::aligned::aligned;
-use super::{build_ms, cell, fastest, short};
+use super::{build_ms, cell, ratio, short};
 
 /// Which runs of Embree a goal allows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -207,19 +207,15 @@ fn speed_ratio(
     rays: &str,
     (kernel, test): (&str, &str),
 ) -> Option<f64> {
-    let own = fastest(report, |run| {
+    let beside = |run: &Run| run.threads == 1 && PanelKey::of(run).kernel == kernel;
+    let own = |run: &Run| {
         goal.own.contains(&run.accel.as_str())
-            && run.kernel == kernel
-            && (run.scene.as_str(), run.rays.as_str(), run.threads) == (scene, rays, 1)
+            && beside(run)
             // What traces as fast as Embree's medium build must be what is built as fast.
             && (goal.against != Against::Medium || is_default(run))
-    })?;
-    let key = PanelKey::of(own);
-    let peer = fastest(report, |run| {
-        run.kernel == test && PanelKey::of(run) == key && goal.against.allows(run)
-    })?;
-    // Other rays are no comparison.
-    (own.ray_count == peer.ray_count).then(|| own.mrays_per_s.median / peer.mrays_per_s.median)
+    };
+    let peer = |run: &Run| run.kernel == test && beside(run) && goal.against.allows(run);
+    ratio(report, (scene, rays), own, peer)
 }
 
 /// Whether no parameter of the accelerator differs from its default.
@@ -251,29 +247,15 @@ fn builds(report: &Report, scenes: &[String]) -> Vec<Row> {
     [1, 2].map(row).into()
 }
 
-/// The fastest run that `which` picks on some rays of a scene.
-fn speed_of(
-    report: &Report,
-    (scene, rays, threads): (&str, &str, usize),
-    which: impl Fn(&Run) -> bool,
-) -> Option<f64> {
-    let here = |run: &Run| {
-        (run.scene.as_str(), run.rays.as_str(), run.threads) == (scene, rays, threads) && which(run)
-    };
-    fastest(report, here).map(|run| run.mrays_per_s.median)
-}
-
 /// What a watertight kernel costs.
 fn kernels(report: &Report, scenes: &[String]) -> Vec<Row> {
     let row = |rays: &str| {
-        let ratio = |scene: &String| {
-            let own = |kernel: &str| {
-                speed_of(report, (scene, rays, 1), |run| {
-                    run.accel == FAST && run.kernel == kernel
-                })
-            };
-            Some(own("woop")? / own("moller-trumbore")?)
+        let of = |kernel: &str| {
+            let kernel = kernel.to_owned();
+            move |run: &Run| run.accel == FAST && run.kernel == kernel && run.threads == 1
         };
+        let ratio =
+            |scene: &String| ratio(report, (scene, rays), of("woop"), of("moller-trumbore"));
         Row {
             what: format!("watertight in {FAST}, {rays}"),
             beside: "woop : moller-trumbore".to_owned(),
@@ -288,14 +270,14 @@ fn kernels(report: &Report, scenes: &[String]) -> Vec<Row> {
 /// What two threads give, and what they give Embree on the same machine.
 fn threads(report: &Report, scenes: &[String]) -> Vec<Row> {
     let row = |accel: &str, rays: &str| {
-        let ratio = |scene: &String| {
-            let own = |threads: usize| {
-                speed_of(report, (scene, rays, threads), |run| {
-                    run.accel == accel && ["woop", "embree-robust"].contains(&run.kernel.as_str())
-                })
-            };
-            Some(own(2)? / own(1)?)
+        let with = |threads: usize| {
+            move |run: &Run| {
+                run.accel == accel
+                    && run.threads == threads
+                    && ["woop", "embree-robust"].contains(&run.kernel.as_str())
+            }
         };
+        let ratio = |scene: &String| ratio(report, (scene, rays), with(2), with(1));
         Row {
             what: format!("two threads in {accel}, {rays}"),
             beside: "2 threads : 1 thread".to_owned(),

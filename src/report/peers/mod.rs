@@ -2,8 +2,8 @@
 //!
 //! ```text
 //!                      the fastest own run of a goal's accelerators
-//! ratio of a scene = ───────────────────────────────────────────────   same rays, kernel's company and threads, so
-//!                    the fastest run of Embree that the goal allows     that samples of both were interleaved
+//! ratio of a scene = ───────────────────────────────────────────────   both of one sweep and on the same rays, so
+//!                    the fastest run of Embree that the goal allows     that their samples were interleaved
 //! ```
 //!
 //! A watertight kernel stands against Embree's robust test, Möller and Trumbore's against its fast one. A goal is met
@@ -24,7 +24,7 @@ pub fn page(report: &Report) -> String {
         "# raylab beside its peers\n\n",
         "Ratios of median speeds over the same rays, samples of both interleaved: raylab's own over Embree's best. Above 1 \
          raylab is faster. `packets`: the faster of single rays and packets of sixteen, medium and high build; `promised`: also \
-         packets whose caller promises that they are coherent; `single`: single rays only; `medium`: medium build only. Rows that compare kernels or thread counts compare groups measured one after another.\n\n",
+         packets whose caller promises that they are coherent; `single`: single rays only; `medium`: medium build only.\n\n",
         &goals::table(report, &scenes(report)),
         &structures(report),
         &rays(report),
@@ -63,14 +63,40 @@ fn scenes(report: &Report) -> Vec<String> {
     scenes
 }
 
-/// The fastest of the runs that `which` picks, where it has a speed.
+/// The fastest of the runs that `which` picks, where it has a speed; of those that were made together, if there are several
+/// sweeps.
 fn fastest(report: &Report, which: impl Fn(&Run) -> bool) -> Option<&Run> {
-    let speed = |run: &Run| run.mrays_per_s.median;
-    let measured = report
-        .runs
-        .iter()
-        .filter(|run| speed(run) > 0.0 && which(run));
-    measured.max_by(|a, b| speed(a).total_cmp(&speed(b)))
+    let first = report.runs.iter().find(|run| is_timed(run) && which(run))?;
+    fastest_of(report, |run| run.sweep == first.sweep && which(run))
+}
+
+/// How many times as fast the fastest run that `own` picks is as the fastest that `peer` picks, on the same rays of a scene,
+/// where samples of both were interleaved: in the first sweep that has both with equally many rays.
+fn ratio(
+    report: &Report,
+    (scene, rays): (&str, &str),
+    own: impl Fn(&Run) -> bool,
+    peer: impl Fn(&Run) -> bool,
+) -> Option<f64> {
+    let here = |run: &Run| run.scene == scene && run.rays == rays;
+    let candidates = report.runs.iter().filter(|run| here(run) && own(run));
+    candidates.into_iter().find_map(|with| {
+        // Subsets of a set are other rays.
+        let beside =
+            |run: &Run| here(run) && (run.sweep, run.ray_count) == (with.sweep, with.ray_count);
+        let own = fastest_of(report, |run| beside(run) && own(run))?;
+        let peer = fastest_of(report, |run| beside(run) && peer(run))?;
+        Some(own.mrays_per_s.median / peer.mrays_per_s.median)
+    })
+}
+
+fn fastest_of(report: &Report, which: impl Fn(&Run) -> bool) -> Option<&Run> {
+    let measured = report.runs.iter().filter(|run| is_timed(run) && which(run));
+    measured.max_by(|a, b| a.mrays_per_s.median.total_cmp(&b.mrays_per_s.median))
+}
+
+fn is_timed(run: &Run) -> bool {
+    run.mrays_per_s.median > 0.0
 }
 
 /// Median of all build times of the runs that `which` picks: whatever rays they were built for.
@@ -158,6 +184,51 @@ mod tests {
             few,
         ]));
         assert!(row_of(&page, "| bvh-wide, primary ").contains("not measured"));
+    }
+
+    #[test]
+    fn one_of_a_goal_s_accelerators_on_the_same_rays_is_enough() {
+        let mut few = measured_run("grid-skip", "primary", 99.0, 100.0);
+        few.ray_count = 7;
+        let page = page(&report(vec![
+            few,
+            measured_run("grid-2level", "primary", 9.0, 100.0),
+            measured_run("embree", "primary", 10.0, 100.0),
+        ]));
+        let row = row_of(&page, "| grid-skip / grid-2level, primary ");
+        assert!(row.contains("0.900") && row.contains("MISS"), "{row}");
+    }
+
+    #[test]
+    fn ratios_are_of_runs_that_one_sweep_has_made() {
+        let run = |sweep, accel, kernel: &str, speed| {
+            let mut run = measured_run(accel, "bounce", speed, 1.0);
+            run.sweep = Some(sweep);
+            if accel == "bvh-wide" {
+                run.kernel = kernel.to_owned();
+            }
+            run
+        };
+        let mut runs = vec![
+            run(0, "bvh-wide", "woop", 12.0),
+            run(0, "embree", "", 10.0),
+            // The machine is three times as slow, and then ten times as fast.
+            run(1, "bvh-wide", "moller-trumbore", 4.0),
+            run(2, "bvh-wide", "moller-trumbore", 160.0),
+            run(2, "bvh-wide", "woop", 120.0),
+        ];
+        let page = page(&report(runs.clone()));
+        let kernels = row_of(&page, "| watertight in bvh-wide, bounce ");
+        assert!(kernels.contains("0.750"), "{kernels}");
+        let speed = row_of(&page, "| bvh-wide, bounce ");
+        assert!(speed.contains("1.20"), "{speed}");
+        assert!(page.contains("12.0") && !page.contains("120"), "{page}");
+        runs.truncate(3);
+        let apart = row_of(
+            &super::page(&report(runs)),
+            "| watertight in bvh-wide, bounce ",
+        );
+        assert!(apart.contains("not measured"), "{apart}");
     }
 
     #[test]

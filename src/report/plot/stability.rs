@@ -28,6 +28,8 @@ const STAIR: f64 = 13.0;
 const TOP: f64 = 62.0;
 /// Between the names of the cases and the first column, and after the last.
 const APART: f64 = 12.0;
+/// From the middle of a column to the name above it.
+const NAME: f64 = 8.0;
 
 /// What one half of the map shows: kernels or accelerators.
 struct Half<'a> {
@@ -40,6 +42,41 @@ struct Half<'a> {
 impl Half<'_> {
     fn x(&self, column: usize) -> f64 {
         self.left + (column as f64 + 0.5) * COLUMN
+    }
+
+    /// Where its title and the names of its methods end, which lean to the right of their columns.
+    fn right(&self, face: Face) -> f64 {
+        let names = self.methods.iter().enumerate();
+        names
+            .map(|(i, method)| self.x(i) + NAME + face.width(method))
+            .fold(self.left + bold(face).width(self.title), f64::max)
+    }
+}
+
+/// The halves of the map, side by side; one where it has no accelerators.
+fn halves(map: &Map, face: Face) -> Vec<Half<'_>> {
+    let cases = map.cases.iter().map(|c| face.width(c)).fold(0.0, f64::max);
+    let kernels = Half {
+        title: "Kernels, by the oracle",
+        methods: &map.kernels,
+        cell: Map::kernel_cell,
+        left: MARGIN + 10.0 + cases + APART,
+    };
+    let accels = Half {
+        title: "Accelerators, by brute force",
+        methods: &map.accels,
+        cell: Map::accel_cell,
+        left: kernels.right(face) + 2.0 * APART,
+    };
+    let mut halves = vec![kernels, accels];
+    halves.retain(|half| !half.methods.is_empty());
+    halves
+}
+
+fn bold(face: Face) -> Face {
+    Face {
+        weight: Weight::Bold,
+        ..face
     }
 }
 
@@ -61,31 +98,8 @@ pub(super) fn svg(map: &Map, style: Style) -> Result<String, String> {
         colour: theme.ink,
     };
     let lines = lines(map);
-    let widest = |names: &[String]| names.iter().map(|n| small.width(n)).fold(0.0, f64::max);
-    let cases = map.cases.iter().map(|c| small.width(c)).fold(0.0, f64::max);
-    let first = MARGIN + 10.0 + cases + APART;
-    let span = |methods: &[String]| methods.len() as f64 * COLUMN;
-    // Names lean to the right of their columns, the last of them by its whole width.
-    let second = first + span(&map.kernels) + widest(&map.kernels) + 2.0 * APART;
-    let halves = [
-        Half {
-            title: "Kernels, by the oracle",
-            methods: &map.kernels,
-            cell: Map::kernel_cell,
-            left: first,
-        },
-        Half {
-            title: "Accelerators, by brute force",
-            methods: &map.accels,
-            cell: Map::accel_cell,
-            left: second,
-        },
-    ];
-    let halves = &halves[..if map.accels.is_empty() { 1 } else { 2 }];
-    let right = halves
-        .iter()
-        .map(|h| h.left + span(h.methods) + widest(h.methods))
-        .fold(0.0, f64::max);
+    let halves = halves(map, small);
+    let right = halves.iter().map(|h| h.right(small)).fold(0.0, f64::max);
     let width = (right + MARGIN).max(640.0).ceil();
     let stairs = halves.iter().map(|h| h.methods.len()).max().unwrap_or(0);
     let body = TOP + 20.0 + stairs as f64 * STAIR + 6.0;
@@ -96,7 +110,7 @@ pub(super) fn svg(map: &Map, style: Style) -> Result<String, String> {
     let mut drawn = String::new();
     let mut canvas = Canvas::new(&mut drawn, width, height, theme.ground);
     title(&mut canvas, theme, map);
-    for half in halves {
+    for half in &halves {
         draw_half(&mut canvas, theme, map, half, &lines, body, small);
     }
     draw_names(&mut canvas, theme, &lines, body, small);
@@ -158,11 +172,8 @@ fn draw_half<'a>(
     body: f64,
     face: Face,
 ) {
-    let bold = Face {
-        weight: Weight::Bold,
-        ..face
-    };
-    canvas.text(half.title, (half.left, TOP + 10.0), Anchor::Start, bold);
+    let title = (half.left, TOP + 10.0);
+    canvas.text(half.title, title, Anchor::Start, bold(face));
     for (i, method) in half.methods.iter().enumerate() {
         let y = TOP + 20.0 + (i as f64 + 0.5) * STAIR;
         let x = half.x(i);
@@ -172,7 +183,7 @@ fn draw_half<'a>(
             0.8,
             &[],
         );
-        canvas.text(method, (x + 8.0, y + 3.5), Anchor::Start, face);
+        canvas.text(method, (x + NAME, y + 3.5), Anchor::Start, face);
         for (row, line) in lines.iter().enumerate() {
             if let Line::Case(case) = line
                 && let Some(cell) = (half.cell)(map, method, case)
@@ -257,4 +268,54 @@ fn small_print(map: &Map) -> String {
         text.push_str(" Stopped before all cells were done.");
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::plot::theme::LIGHT;
+
+    fn map(kernels: usize, accels: usize) -> Map {
+        let names = |count| (0..count).map(|i| format!("method-{i}")).collect();
+        Map {
+            seed: 1,
+            cases: vec!["closed-edges"],
+            kernels: names(kernels),
+            accels: names(accels),
+            cells: Vec::new(),
+            stopped: false,
+        }
+    }
+
+    #[test]
+    fn titles_and_names_end_before_the_next_half_and_within_the_picture() {
+        let small = Face {
+            size: 11.0,
+            weight: Weight::Regular,
+            colour: LIGHT.ink,
+        };
+        for (kernels, accels) in [(1, 1), (1, 30), (30, 1), (12, 14), (60, 1)] {
+            let map = map(kernels, accels);
+            let halves = halves(&map, small);
+            let ends = |half: &Half| {
+                let title = half.left + bold(small).width(half.title);
+                let names = half.methods.iter().enumerate();
+                let names = names.map(|(i, name)| half.x(i) + NAME + small.width(name));
+                names.fold(title, f64::max)
+            };
+            assert!(ends(&halves[0]) < halves[1].left, "{kernels} kernels");
+            let style = Style {
+                theme: &LIGHT,
+                adapts: false,
+            };
+            let svg = svg(&map, style).unwrap();
+            let width = svg
+                .split("width=\"")
+                .nth(1)
+                .and_then(|rest| rest.split('"').next());
+            let width: f64 = width.unwrap().parse().unwrap();
+            assert!(ends(&halves[1]) < width, "{accels} accelerators");
+        }
+        assert_eq!(halves(&map(3, 0), small).len(), 1);
+    }
 }

@@ -226,7 +226,7 @@ pub(super) fn choices(tree: &BinaryTree) -> Vec<Choice> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::super::bvh::{Build, binary};
+    use super::super::super::super::bvh::{Build, binary, grouped};
     use super::super::super::super::testbed::{mesh, soup};
     use super::*;
 
@@ -242,7 +242,12 @@ mod tests {
             let cost = |a: usize| least(tree, first, a) + least(tree, first + 1, lanes - a);
             (1..lanes).map(cost).fold(f32::INFINITY, f32::min)
         };
-        let leaf = area * TEST * (count(tree, at).div_ceil(LANES)) as f32;
+        let blocks = count(tree, at).div_ceil(LANES);
+        let leaf = if blocks <= MOST_BLOCKS {
+            area * TEST * blocks as f32
+        } else {
+            f32::INFINITY
+        };
         let one = leaf.min(area * STEP + divided(WIDTH));
         if lanes == 1 {
             one
@@ -255,7 +260,7 @@ mod tests {
         let node = &tree.nodes[at];
         let first = node.first as usize;
         if node.is_leaf() {
-            1
+            node.count as usize
         } else {
             count(tree, first) + count(tree, first + 1)
         }
@@ -266,15 +271,27 @@ mod tests {
         for (triangles, size) in [(2, 0.1), (5, 0.1), (12, 0.02), (12, 1.0), (14, 0.3)] {
             for seed in 0..6 {
                 let mesh = mesh(&soup(triangles, size, seed));
-                let tree = binary(&mesh, Build::Binned, 1);
-                let planner = Planner::new(&tree.nodes);
-                let mut below = vec![Choice::LEAF; tree.nodes.len() - 1];
-                let costs = planner.plan(Subtree::whole(&tree.nodes), &mut below).costs;
-                for lanes in 1..WIDTH {
-                    let least = least(&tree, 0, lanes);
-                    assert!((costs[lanes - 1] - least).abs() <= 1e-5 * least);
-                }
+                assert_least(&binary(&mesh, Build::Binned, 1));
             }
+        }
+        for (triangles, size) in [(9, 0.1), (24, 0.02), (24, 1.0), (40, 0.3)] {
+            for seed in 0..6 {
+                let mesh = mesh(&soup(triangles, size, seed));
+                let tree = grouped(&mesh, Build::Binned);
+                let most = tree.nodes.iter().filter(|node| node.is_leaf());
+                assert!(most.map(|node| node.count).max() > Some(1));
+                assert_least(&tree);
+            }
+        }
+    }
+
+    fn assert_least(tree: &BinaryTree) {
+        let planner = Planner::new(&tree.nodes);
+        let mut below = vec![Choice::LEAF; tree.nodes.len() - 1];
+        let costs = planner.plan(Subtree::whole(&tree.nodes), &mut below).costs;
+        for lanes in 1..WIDTH {
+            let least = least(tree, 0, lanes);
+            assert!((costs[lanes - 1] - least).abs() <= 1e-5 * least);
         }
     }
 }

@@ -160,11 +160,13 @@ impl Collapse<'_> {
             count: 0,
         };
         self.divide(subtree, WIDTH, &mut lanes);
-        // Where the order does not come from the ray, large boxes are likely to be met.
+        // Where any hit will do the last lane is visited first. The largest box is the likeliest to block: against the
+        // smallest first, shadow rays are a seventh (engine, plant) to a third (sponza, armadillo) faster, and slower by a
+        // seventh on the bunny alone.
         let mut sorted = lanes
             .subtrees
             .map(|s| (half_area(&self.nodes[s.root].bounds()), s));
-        sorted[..lanes.count].sort_by(|a, b| b.0.total_cmp(&a.0));
+        sorted[..lanes.count].sort_by(|a, b| a.0.total_cmp(&b.0));
         let node = part.nodes.len();
         part.nodes.push(Node::EMPTY);
         for (lane, (_, subtree)) in sorted[..lanes.count].iter().enumerate() {

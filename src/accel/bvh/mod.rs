@@ -388,14 +388,14 @@ mod tests {
 
     #[test]
     fn rays_in_the_planes_of_spatial_splits_are_answered_as_by_brute_force() {
-        for seed in 1..4 {
-            let mesh = mesh(&mixed(300, seed));
-            for (build, accel) in [
-                (Build::Sbvh, "bvh:build=sbvh:leaf=1"),
-                (Build::Sbvh, "bvh:build=sbvh-reinsert"),
-                (Build::Presplit, "bvh:build=presplit:leaf=1"),
-                (Build::Presplit, "bvh-wide:build=presplit"),
-            ] {
+        for (build, small, accel) in [
+            (Build::Sbvh, 300, "bvh:build=sbvh:leaf=1"),
+            (Build::Sbvh, 300, "bvh:build=sbvh-reinsert"),
+            (Build::Presplit, 3000, "bvh:build=presplit:leaf=1"),
+            (Build::Presplit, 3000, "bvh-wide:build=presplit"),
+        ] {
+            for seed in 1..4 {
+                let mesh = mesh(&mixed(small, seed));
                 let tree = binary(&mesh, build, 1);
                 assert!(tree.references.len() > mesh.len() + 30);
                 assert_agrees("mixed", &mesh, accel, &rays_at_boxes(&tree, seed));

@@ -23,6 +23,7 @@
 
 use rayon::prelude::*;
 
+use crate::geometry::Vec3;
 use crate::scene::Mesh;
 
 use super::super::sah::half_area;
@@ -74,7 +75,7 @@ fn sampled(i: usize, count: usize) -> u32 {
 /// By how much half the surface of a triangle's box exceeds the triangle's shadows along the axes, which no box of it can
 /// do without; at least zero, but for rounding.
 fn useless(mesh: &Mesh, prim: u32) -> f64 {
-    let [a, b, c] = mesh.corners(prim).map(|corner| corner.as_dvec3());
+    let [a, b, c] = mesh.corners(prim).map(Vec3::as_dvec3);
     let shadows = 0.5 * (b - a).cross(c - a).abs().element_sum();
     half_area(&mesh.triangle_bounds(prim)) - shadows
 }
@@ -84,7 +85,6 @@ mod tests {
     use super::super::super::testbed::{mesh, nasty, soup, sphere};
     use super::super::{Build, binary, grouped, validate};
     use super::*;
-    use crate::geometry::Vec3;
     use std::sync::Arc;
 
     /// Needles across the axes among small triangles.

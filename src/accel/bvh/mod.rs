@@ -188,7 +188,8 @@ impl Structure for Bvh {
 #[cfg(test)]
 mod tests {
     use super::super::testbed::{
-        Dice, assert_agrees, geometric, mesh, nasty, ray_count, rays, soup, sphere,
+        Dice, assert_agrees, assert_agrees_with, geometric, mesh, nasty, ray_count, rays, soup,
+        sphere,
     };
     use super::*;
     use crate::geometry::Vec3;
@@ -398,7 +399,9 @@ mod tests {
                 let mesh = mesh(&mixed(small, seed));
                 let tree = binary(&mesh, build, 1);
                 assert!(tree.references.len() > mesh.len() + 30);
-                assert_agrees("mixed", &mesh, accel, &rays_at_boxes(&tree, seed));
+                // Rays that start on triangles are what other kernels err on.
+                let rays = rays_at_boxes(&tree, seed);
+                assert_agrees_with("exact", "mixed", &mesh, (accel, None), &rays, 0);
             }
         }
     }

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! triangles        at most 1 ───────────────────────────────────────────▶ brute
-//! B, the large     at most 1: triangles are small beside their distances ▶ bvh-wide, build=binned
+//! B, the large     at most 1: triangles are small beside their distances ▶ bvh-wide, build=presplit
 //! boxes            at most 4: some are large, and in the way             ▶ bvh-wide, build=reinsert
 //!                  more: large ones lie across each other                ▶ bvh-wide, build=sbvh-reinsert
 //! ```
@@ -23,10 +23,10 @@
 //! | scene | picked | best | regret | to the defaults |
 //! |---|---|---|---|---|
 //! | `one` | `brute` | `brute` | 0 % | 1.56 |
-//! | `soup:2`, `soup:4` | `binned` | all alike | 1 %, 2 % | 1 |
-//! | `soup:10000` | `binned` | all alike | 1 % | 1 |
-//! | Stanford bunny | `binned` | `sbvh` | 2 % | 1 |
-//! | `teapot` | `binned` | all alike | 1 % | 1 |
+//! | `soup:2`, `soup:4` | `presplit` | all alike | 1 %, 2 % | 1 |
+//! | `soup:10000` | `presplit` | all alike | 1 % | 1 |
+//! | Stanford bunny | `presplit` | `sbvh` | 2 % | 1 |
+//! | `teapot` | `presplit` | all alike | 1 % | 1 |
 //! | `cornell` | `reinsert` | all alike | 0 % | 1.01 |
 //! | `caballito` | `reinsert` | `sbvh-reinsert` | 3 % | 1.06 |
 //! | `city:100` | `reinsert` | `reinsert` | 0 % | 1.04 |
@@ -101,7 +101,7 @@ impl Pick {
         } else if large > MOVE {
             "reinsert"
         } else {
-            "binned"
+            "presplit"
         })
     }
 

@@ -28,9 +28,15 @@ pub(super) const PARALLEL: usize = 4096;
 
 /// The references of all triangles of `mesh`.
 pub(super) fn references(mesh: &Mesh) -> Vec<Reference> {
-    let mut references = pages::with_capacity(mesh.len());
+    references_before(mesh, 0)
+}
+
+/// The references of all triangles of `mesh` before room for so many more.
+pub(super) fn references_before(mesh: &Mesh, room: usize) -> Vec<Reference> {
+    let mut references = pages::with_capacity(mesh.len() + room);
     let reference = |prim| Reference::new(mesh.triangle_bounds(prim), prim);
     references.par_extend((0..mesh.len() as u32).into_par_iter().map(reference));
+    references.resize(mesh.len() + room, Reference::NONE);
     references
 }
 

@@ -4,6 +4,8 @@
 //! The boxes of chopped pieces only steer the choice, so they are computed in `f32` and may be off by its rounding;
 //! what becomes a reference is clipped again, conservatively.
 
+use std::ops::Range;
+
 use glam::Vec4;
 
 use crate::geometry::Vec3;
@@ -42,6 +44,34 @@ impl Plane {
     }
 }
 
+/// Where a plane is looked for.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Search {
+    /// About so many references of a node say where its plane should be.
+    pub sample: usize,
+    /// Only across the longest edge of the node.
+    pub longest_only: bool,
+}
+
+impl Search {
+    /// Everywhere.
+    pub const FULL: Self = Self {
+        sample: usize::MAX,
+        longest_only: false,
+    };
+
+    fn axes(&self, bounds: &Bounds) -> Range<usize> {
+        let extent = bounds.extent();
+        let longer = |a: usize, b: usize| if extent[b] > extent[a] { b } else { a };
+        let longest = longer(longer(0, 1), 2);
+        if self.longest_only {
+            longest..longest + 1
+        } else {
+            0..3
+        }
+    }
+}
+
 /// What falls into the bins of each axis.
 struct Chopped {
     bounds: [[Bounds; BINS]; 3],
@@ -53,12 +83,19 @@ struct Chopped {
 
 /// The plane of least cost across a node among those that cut no more references than there is room for, the first of
 /// equals; `None` where there is none.
-pub(super) fn best(mesh: &Mesh, task: &Task) -> Option<Plane> {
+///
+/// Where references are many, one of a few stands for all of them; planes that none of these lies beside are not found.
+pub(super) fn best(mesh: &Mesh, task: &Task, search: Search) -> Option<Plane> {
     let bounds = &task.extent.bounds;
     let bins = Bins::new(bounds);
-    let work = |chunk: &[Reference]| Chopped::of(mesh, chunk, &bins);
+    let each = task.len().div_ceil(search.sample);
+    let axes = search.axes(bounds);
+    let work = |chunk: &[Reference]| {
+        let sample = chunk.iter().step_by(each);
+        Chopped::of(mesh, sample, &bins, axes.clone())
+    };
     let chopped = chunked(task.references(), work, |a, b| a.joined(&b));
-    chopped.best(&bins, bounds, task.len() + task.room())
+    chopped.best(&bins, bounds, each, task.len() + task.room())
 }
 
 /// Bins of equal width.
@@ -93,7 +130,12 @@ impl Bins {
 }
 
 impl Chopped {
-    fn of(mesh: &Mesh, references: &[Reference], bins: &Bins) -> Self {
+    fn of<'a>(
+        mesh: &Mesh,
+        references: impl Iterator<Item = &'a Reference>,
+        bins: &Bins,
+        axes: Range<usize>,
+    ) -> Self {
         let mut chopped = Self {
             bounds: [[Bounds::EMPTY; BINS]; 3],
             first: [[0; BINS]; 3],
@@ -111,7 +153,7 @@ impl Chopped {
             } else {
                 corners()
             };
-            for axis in 0..3 {
+            for axis in axes.clone() {
                 let (first, last) = (first[axis], last[axis]);
                 chopped.first[axis][first] += 1;
                 chopped.last[axis][last] += 1;
@@ -142,8 +184,8 @@ impl Chopped {
         self
     }
 
-    /// `most`: references of both sides together.
-    fn best(&self, bins: &Bins, bounds: &Bounds, most: usize) -> Option<Plane> {
+    /// `each`: references for which one stands; `most`: those of both sides together.
+    fn best(&self, bins: &Bins, bounds: &Bounds, each: usize, most: usize) -> Option<Plane> {
         let scale = bounds.scale();
         let mut best: Option<Plane> = None;
         for axis in 0..3 {
@@ -159,13 +201,12 @@ impl Chopped {
                 side.0 = side.0.union(self.bounds[axis][bin - 1]);
                 side.1 += self.first[axis][bin - 1];
                 let sides = [side, beyond];
-                if side.1 == 0 || beyond.1 == 0 || (side.1 + beyond.1) as usize > most {
+                let counts = sides.map(|(_, count)| count * each as u32);
+                if counts.contains(&0) || (counts[0] + counts[1]) as usize > most {
                     continue;
                 }
-                let cost: f32 = sides
-                    .iter()
-                    .map(|(bounds, count)| bounds.half_area(scale) * *count as f32)
-                    .sum();
+                let cost = |side: usize| sides[side].0.half_area(scale) * counts[side] as f32;
+                let cost = cost(0) + cost(1);
                 let place = bins.plane(axis, bin);
                 let inside = place > bounds.min[axis] && place < bounds.max[axis];
                 if inside && best.is_none_or(|b| cost < b.cost) && cost < f32::INFINITY {
@@ -173,7 +214,7 @@ impl Chopped {
                         axis,
                         place,
                         cost,
-                        counts: sides.map(|s| s.1),
+                        counts,
                         sides: sides.map(|s| s.0),
                     });
                 }

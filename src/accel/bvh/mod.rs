@@ -33,6 +33,7 @@ mod exhibit;
 mod leaves;
 mod loops;
 mod partition;
+mod presplit;
 mod reference;
 mod reinsert;
 mod small;
@@ -187,14 +188,16 @@ impl Structure for Bvh {
 #[cfg(test)]
 mod tests {
     use super::super::testbed::{
-        Dice, assert_agrees, geometric, mesh, nasty, ray_count, rays, soup, sphere,
+        Dice, assert_agrees, assert_agrees_with, geometric, mesh, nasty, ray_count, rays, soup,
+        sphere,
     };
     use super::*;
     use crate::geometry::Vec3;
     use proptest::prelude::*;
 
-    const BUILDS: [Build; 4] = [
+    const BUILDS: [Build; 5] = [
         Build::Binned,
+        Build::Presplit,
         Build::Sbvh,
         Build::Reinsert,
         Build::SbvhReinsert,
@@ -207,7 +210,12 @@ mod tests {
     #[test]
     fn nasty_meshes_are_answered_as_by_brute_force() {
         for (name, mesh) in nasty() {
-            for accel in ["bvh", "bvh:build=sbvh:leaf=1", "bvh:build=sbvh-reinsert"] {
+            for accel in [
+                "bvh",
+                "bvh:build=presplit",
+                "bvh:build=sbvh:leaf=1",
+                "bvh:build=sbvh-reinsert",
+            ] {
                 assert_agrees(name, &mesh, accel, &rays(&mesh, ray_count(&mesh), 7));
             }
         }
@@ -227,7 +235,7 @@ mod tests {
         let build = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
             pool.build().expect("a pool").install(|| {
-                let grouped = grouped(&mesh, Build::Binned);
+                let grouped = [Build::Binned, Build::Presplit].map(|build| grouped(&mesh, build));
                 (BUILDS.map(|build| binary(&mesh, build, 4)), grouped)
             })
         };
@@ -310,7 +318,7 @@ mod tests {
     #[test]
     fn spatial_splits_cut_long_triangles_and_leave_small_ones_whole() {
         let mixed = mesh(&mixed(500, 13));
-        let [object, spatial, ..] = BUILDS.map(|build| binary(&mixed, build, 1));
+        let [object, spatial] = [Build::Binned, Build::Sbvh].map(|build| binary(&mixed, build, 1));
         assert!(
             spatial.references.len() > 600 && spatial.cost() < 0.9 * object.cost(),
             "{} references, {} for {}",
@@ -326,7 +334,7 @@ mod tests {
     #[test]
     fn reinsertion_lowers_the_cost_and_keeps_every_reference() {
         let mesh = mesh(&mixed(2000, 14));
-        let [binned, sbvh, reinsert, both] = BUILDS.map(|build| binary(&mesh, build, 1));
+        let [binned, _, sbvh, reinsert, both] = BUILDS.map(|build| binary(&mesh, build, 1));
         for (before, after) in [(&binned, &reinsert), (&sbvh, &both)] {
             assert!(
                 after.cost() < 0.98 * before.cost(),
@@ -381,13 +389,19 @@ mod tests {
 
     #[test]
     fn rays_in_the_planes_of_spatial_splits_are_answered_as_by_brute_force() {
-        for seed in 1..4 {
-            let mesh = mesh(&mixed(300, seed));
-            let tree = binary(&mesh, Build::Sbvh, 1);
-            assert!(tree.references.len() > mesh.len() + 30);
-            let rays = rays_at_boxes(&tree, seed);
-            for accel in ["bvh:build=sbvh:leaf=1", "bvh:build=sbvh-reinsert"] {
-                assert_agrees("mixed", &mesh, accel, &rays);
+        for (build, small, accel) in [
+            (Build::Sbvh, 300, "bvh:build=sbvh:leaf=1"),
+            (Build::Sbvh, 300, "bvh:build=sbvh-reinsert"),
+            (Build::Presplit, 3000, "bvh:build=presplit:leaf=1"),
+            (Build::Presplit, 3000, "bvh-wide:build=presplit"),
+        ] {
+            for seed in 1..4 {
+                let mesh = mesh(&mixed(small, seed));
+                let tree = binary(&mesh, build, 1);
+                assert!(tree.references.len() > mesh.len() + 30);
+                // Rays that start on triangles are what other kernels err on.
+                let rays = rays_at_boxes(&tree, seed);
+                assert_agrees_with("exact", "mixed", &mesh, (accel, None), &rays, 0);
             }
         }
     }

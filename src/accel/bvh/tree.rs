@@ -6,7 +6,8 @@ use crate::scene::Mesh;
 
 use super::super::items::LANES;
 use super::super::slab::{Corners, corners};
-use super::{binned, leaves, reinsert, spatial};
+use super::spatial::{self, Effort};
+use super::{binned, leaves, presplit, reinsert};
 
 /// A box and what is in it: two children at `first` and `first + 1`, or `count` references from `first` on.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -105,6 +106,8 @@ impl BinaryTree {
 pub(in crate::accel) enum Build {
     /// Top down, split by histograms of centroids.
     Binned,
+    /// As [`Build::Binned`]; where that pays, planes first cut triangles where large boxes overlap.
+    Presplit,
     /// As [`Build::Binned`], and planes cut triangles where boxes would overlap.
     Sbvh,
     /// As [`Build::Binned`], then subtrees move to where they enlarge boxes least.
@@ -118,13 +121,20 @@ impl Build {
     pub const PARAM: ParamSpec = ParamSpec {
         name: "build",
         about: "How the tree is built.",
-        kind: ParamKind::Choice(&["binned", "sbvh", "reinsert", "sbvh-reinsert"]),
+        kind: ParamKind::Choice(&["binned", "presplit", "sbvh", "reinsert", "sbvh-reinsert"]),
         default: "binned",
+    };
+
+    /// The same for a structure whose blocks of triangles make up for the references that are added.
+    pub const SPLIT_PARAM: ParamSpec = ParamSpec {
+        default: "presplit",
+        ..Self::PARAM
     };
 
     /// The build that `params` names.
     pub fn of(params: &Params) -> Self {
         match params.text("build") {
+            "presplit" => Self::Presplit,
             "sbvh" => Self::Sbvh,
             "reinsert" => Self::Reinsert,
             "sbvh-reinsert" => Self::SbvhReinsert,
@@ -140,9 +150,10 @@ impl Build {
 pub(in crate::accel) fn binary(mesh: &Mesh, build: Build, most: usize) -> BinaryTree {
     let tree = match build {
         Build::Binned => binned::build(binned::references(mesh), 1),
-        Build::Sbvh => spatial::build(mesh),
+        Build::Presplit => presplit::build(mesh, 1),
+        Build::Sbvh => spatial::build(mesh, Effort::FULL, 1),
         Build::Reinsert => reinsert::optimised(binned::build(binned::references(mesh), 1)),
-        Build::SbvhReinsert => reinsert::optimised(spatial::build(mesh)),
+        Build::SbvhReinsert => reinsert::optimised(spatial::build(mesh, Effort::FULL, 1)),
     };
     if most > 1 {
         leaves::merged(&tree, most)
@@ -151,8 +162,8 @@ pub(in crate::accel) fn binary(mesh: &Mesh, build: Build, most: usize) -> Binary
     }
 }
 
-/// A tree over `mesh` for a structure whose leaves are blocks of [`LANES`] triangles: [`Build::Binned`] leaves so many
-/// together, the others none, as with [`binary`] and `most` = 1.
+/// A tree over `mesh` for a structure whose leaves are blocks of [`LANES`] triangles: [`Build::Binned`] and [`Build::Presplit`]
+/// leave so many together, the others none, as with [`binary`] and `most` = 1.
 ///
 /// A test of a block costs the same whether it is full or not, so that finer leaves hardly help. Measured against leaves of
 /// one reference with `bvh-wide` and `woop`: the cost by the heuristic is 0.2 % higher on the Stanford bunny, 0.8 % on the
@@ -161,6 +172,7 @@ pub(in crate::accel) fn binary(mesh: &Mesh, build: Build, most: usize) -> Binary
 pub(in crate::accel) fn grouped(mesh: &Mesh, build: Build) -> BinaryTree {
     match build {
         Build::Binned => binned::build(binned::references(mesh), LANES),
+        Build::Presplit => presplit::build(mesh, LANES),
         build => binary(mesh, build, 1),
     }
 }

@@ -245,7 +245,7 @@ mod tests {
     fn one_thread_and_many_collapse_to_the_same_tree() {
         // Large enough for subtrees that are made apart, with cut triangles too.
         let mesh = mesh(&soup(60_000, 0.05, 4));
-        for build in [Build::Binned, Build::SbvhReinsert] {
+        for build in [Build::Binned, Build::Presplit, Build::SbvhReinsert] {
             let tree = grouped(&mesh, build);
             assert!(tree.nodes.len() > 3 * APART);
             let (wide, slots) = BvhWide::collapse(&tree, &mesh);

@@ -46,7 +46,7 @@ pub(super) const ENTRY: AcceleratorEntry = AcceleratorEntry {
     name: "bvh-wide",
     about: "A tree of boxes with eight children a node, tested at once, and triangles in blocks of eight.",
     paper: "Wald, Benthin and Boulos 2008, Getting Rid of Packets",
-    params: &[Build::PARAM, Way::PARAM],
+    params: &[Build::SPLIT_PARAM, Way::PARAM],
     control: false,
     resolution: None,
     peer: None,

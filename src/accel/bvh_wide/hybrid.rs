@@ -31,7 +31,8 @@ const GROUP: usize = SIXTEEN;
 /// Rays that are looked at together to make groups.
 pub(super) const WINDOW: usize = 128;
 
-/// So many rays of a group at a node, in the mean, cost less together than alone.
+/// So many rays of a group at a node, in the mean, cost less together than in turns: as measured with shadow rays, which
+/// share 12 or 13 of 16 where groups win, and bounce rays, which share 10 where both are alike.
 const MANY: u32 = 11;
 
 /// Fewer rays than this go alone.
@@ -64,7 +65,7 @@ pub(super) struct Shared {
 }
 
 impl Shared {
-    /// Whether that was more than a group costs, as measured for bounce rays.
+    /// Whether that was enough for a group to pay.
     pub fn pays(self) -> bool {
         self.rays >= MANY * self.nodes
     }

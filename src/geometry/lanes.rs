@@ -28,7 +28,7 @@ pub use portable::{F32x8, Mask8};
 pub use rows::{HitLanes, RayLanes, SIXTEEN};
 
 /// The numbers of the bits of a word that are set, the least first: of the lanes that a mask holds.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug)]
 pub struct Ones(pub u32);
 
 impl Iterator for Ones {

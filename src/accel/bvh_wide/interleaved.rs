@@ -73,7 +73,7 @@ struct Kinds {
 impl Kinds {
     #[inline(always)]
     fn note(&mut self, flight: usize, next: Child) {
-        let over = u32::from(next == Child::NONE);
+        let over = u32::from(next == Child::END);
         self.over |= over << flight;
         self.leaves |= (u32::from(next.is_leaf()) ^ over) << flight;
     }

@@ -64,8 +64,10 @@ pub(super) const ENTRY: AcceleratorEntry = AcceleratorEntry {
 struct Child(u32);
 
 impl Child {
-    /// Nothing: a box that no ray meets.
+    /// Nothing: a leaf without blocks, in a box that no ray meets but one whose numbers tell nothing about boxes.
     const NONE: Self = Self(Self::LEAF);
+    /// What is taken from a stack when nothing waits.
+    const END: Self = Self(Self::LEAF | 1 << 3);
     /// Set where it is no node.
     const LEAF: u32 = 1 << 31;
     /// Most blocks of a leaf.

@@ -9,7 +9,7 @@ use super::hybrid::GroupStack;
 /// Most children that wait: seven a level, below them what ends a walk, and room for a whole vector behind the last.
 const ROOM: usize = 7 * MAX_DEPTH + 9;
 
-/// Room for the children that wait for one ray. Below them all lies [`Child::NONE`], so that what is taken last ends its
+/// Room for the children that wait for one ray. Below them all lies [`Child::END`], so that what is taken last ends its
 /// walk.
 pub struct Stack {
     children: [u32; ROOM],
@@ -55,7 +55,7 @@ impl Stacks {
 impl Stack {
     fn new() -> Self {
         Self {
-            children: [Child::NONE.0; ROOM],
+            children: [Child::END.0; ROOM],
             keys: [0.0; ROOM],
         }
     }
@@ -152,7 +152,7 @@ mod tests {
             }
             let kept = stack.keep::<I>(waiting, self.limit);
             let all = (1..=kept).map(|place| (stack.top(place).0, stack.top_entry(place)));
-            assert_eq!(stack.top(0), Child::NONE);
+            assert_eq!(stack.top(0), Child::END);
             all.collect()
         }
     }

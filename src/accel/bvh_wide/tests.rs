@@ -86,6 +86,19 @@ fn batches_of_any_length_are_answered_also_where_the_root_is_a_leaf() {
 }
 
 #[test]
+fn rays_that_cannot_tell_a_box_from_an_empty_lane_are_answered_as_by_brute_force() {
+    for scale in [1e-38_f32, 1e-30, 1e30] {
+        let scaled = |t: &[Vec3; 3]| t.map(|corner| corner * scale);
+        let mesh = mesh(&sphere(16).iter().map(scaled).collect::<Vec<_>>());
+        for accel in WAYS {
+            for seed in [21, 22] {
+                assert_agrees("scaled", &mesh, accel, &rays(&mesh, 300, seed));
+            }
+        }
+    }
+}
+
+#[test]
 fn a_long_batch_of_which_parts_suit_groups_and_others_turns_is_answered_as_one_ray_after_another() {
     let mesh = mesh(&sphere(16));
     let mut dice = Dice::new(12);

@@ -106,19 +106,14 @@ impl<I: Isa, C: Clip<I::X8>> Walk<I, C> {
     }
 
     /// Visits a leaf; of what waits, what begins beyond the hit that it may have is dropped at once. Where none is left,
-    /// [`Child::NONE`] is next.
+    /// [`Child::END`] is next.
     #[inline(always)]
     pub fn visit_leaf<V: Visitor>(&mut self, stack: &mut Stack, visitor: &mut V) {
         let limit = visitor.t_limit();
-        let mut blocks = self.next.blocks();
-        loop {
-            if visitor.test(blocks.start) {
-                self.next = Child::NONE;
+        for block in self.next.blocks() {
+            if visitor.test(block) {
+                self.next = Child::END;
                 return;
-            }
-            blocks.start += 1;
-            if blocks.is_empty() {
-                break;
             }
         }
         let now = visitor.t_limit();

@@ -1,12 +1,17 @@
 //! Batches: the rays that a structure traces in the way that suits them, and where their answers go.
 
-use crate::geometry::lanes::{Isa, Lane, LaneMask, Ones, RayLanes, SIXTEEN, prefetch};
+use std::marker::PhantomData;
+use std::ops::Range;
+
+use crate::geometry::lanes::{Isa, Lane, LaneMask, Ones, RayLanes, SIXTEEN, Task, prefetch};
 use crate::geometry::{Hit, Ray};
 use crate::kernel::Kernel;
 
+use super::Structure;
 use super::items::Items;
 use super::packet::{Bundle, Packet, Vector};
 use super::query::{Packed, Query};
+use super::slab::{Scene, WideSlabRay};
 use super::visit::{Uncounted, Visitor};
 
 /// What is kept of a query.
@@ -71,14 +76,19 @@ pub trait Rays<'a> {
         lanes: &RayLanes<<Self::Isa as Isa>::Rays>,
     ) -> Option<Self::Sixteen>;
 
-    /// Tests an item against those of sixteen rays whose bit is set, triangle by triangle; each has its visitor.
+    /// The triangles of an item of `scene` whose boxes `ray` meets until `limit`, a bit each.
+    fn met_by(&self, item: u32, ray: &WideSlabRay, limit: f32, scene: &Scene) -> u32;
+
+    /// Tests those triangles of an item whose bit is set in `met`, one by one, against those of sixteen rays whose bit is set
+    /// in `active`; each has its visitor. Returns a bit for each that took a hit.
     fn test_sixteen(
         &self,
         rays: &Self::Sixteen,
         active: u32,
         item: u32,
+        met: u32,
         visitors: &mut [Self::Visitor],
-    );
+    ) -> u32;
 
     /// What a traversal of a packet reports to.
     type Packet<'p>: Visitor
@@ -100,6 +110,62 @@ pub trait Rays<'a> {
 
     /// Takes the answer of a ray.
     fn finish(&mut self, index: usize, visitor: &Self::Visitor);
+}
+
+/// How the rays of a batch are traced through a structure, or some of them.
+pub(super) trait Course<S: Structure> {
+    /// What is learnt on the way.
+    type Out;
+
+    /// Traces the rays in `range`.
+    fn run<'a, R: Rays<'a>>(
+        structure: &S,
+        batch: &mut R,
+        range: Range<usize>,
+        scratch: &mut S::Scratch,
+    ) -> Self::Out;
+}
+
+/// Runs `C` in a function of its own: within a larger one the compiler keeps less in registers.
+#[inline(always)]
+pub(super) fn run_apart<'a, C: Course<S>, S: Structure, R: Rays<'a>>(
+    structure: &S,
+    batch: &mut R,
+    range: Range<usize>,
+    scratch: &mut S::Scratch,
+) -> C::Out {
+    R::Isa::enter(OnCourse::<C, S, R> {
+        structure,
+        batch,
+        range,
+        scratch,
+        course: PhantomData,
+    })
+}
+
+/// Rays on a course.
+struct OnCourse<'t, 'a, C, S: Structure, R: Rays<'a>> {
+    structure: &'t S,
+    batch: &'t mut R,
+    range: Range<usize>,
+    scratch: &'t mut S::Scratch,
+    course: PhantomData<(C, &'a ())>,
+}
+
+impl<'a, C: Course<S>, S: Structure, R: Rays<'a>> Task for OnCourse<'_, 'a, C, S, R> {
+    type Out = C::Out;
+
+    #[inline(always)]
+    fn run<I: Isa>(self) -> C::Out {
+        C::run(self.structure, self.batch, self.range, self.scratch)
+    }
+}
+
+/// Sixteen rays as the kernel reads them.
+pub struct Sixteen<K: Kernel, I: Isa> {
+    prepared: K::Prepared<1, I::Rays>,
+    t_min: I::Rays,
+    t_max: I::Rays,
 }
 
 /// Rays bound to a kernel and a query.
@@ -153,15 +219,24 @@ impl<'a, T: Items, K: Kernel, I: Isa, A: Answer, const OCCLUSION: bool> Rays<'a>
 
     const WAYS: bool = K::PACKETS && I::SIXTEEN;
 
-    type Sixteen = K::Prepared<1, I::Rays>;
+    type Sixteen = Sixteen<K, I>;
 
     #[inline(always)]
     fn sixteen(&self, lead: &Ray, lanes: &RayLanes<I::Rays>) -> Option<Self::Sixteen> {
         let alike = K::same_frame(lead, &lanes.lines.dir);
         alike.then(
             #[inline(always)]
-            || self.packed.kernel.prepare(lead, &lanes.lines),
+            || Sixteen {
+                prepared: self.packed.kernel.prepare(lead, &lanes.lines),
+                t_min: lanes.t_min,
+                t_max: lanes.t_max,
+            },
         )
+    }
+
+    #[inline(always)]
+    fn met_by(&self, item: u32, ray: &WideSlabRay, limit: f32, scene: &Scene) -> u32 {
+        T::met_by::<K, I>(&self.packed.items[item as usize], ray, limit, scene)
     }
 
     #[inline(always)]
@@ -170,30 +245,50 @@ impl<'a, T: Items, K: Kernel, I: Isa, A: Answer, const OCCLUSION: bool> Rays<'a>
         rays: &Self::Sixteen,
         mut active: u32,
         item: u32,
+        met: u32,
         visitors: &mut [Self::Visitor],
-    ) {
-        T::each_triangle(
-            &self.packed.items,
-            item,
-            #[inline(always)]
-            |prim, triangle: &K::Packed<1>| {
-                let Some(hit) = self.packed.kernel.intersect(rays, triangle) else {
-                    return;
-                };
-                let met = hit.mask.bits() & active;
-                if met == 0 {
-                    return;
-                }
-                let bounds = K::t_error_bound(rays, triangle, hit.t);
-                for lane in Ones(met) {
-                    let visitor = &mut visitors[lane % SIXTEEN];
-                    let taken = visitor.offer(prim, &hit, lane, || bounds.get(lane));
-                    if OCCLUSION && taken {
-                        active &= !(1 << lane);
-                    }
-                }
-            },
-        );
+    ) -> u32 {
+        let kernel = &self.packed.kernel;
+        let items = &self.packed.items[item as usize];
+        let mut taken = 0;
+        if OCCLUSION && !K::EXACT_T {
+            let intervals = [rays.t_min, rays.t_max];
+            for place in Ones(met) {
+                let (_, triangle) = T::triangle::<K>(items, item, place);
+                taken |= kernel.hit_within(&rays.prepared, &triangle, intervals);
+            }
+            taken &= active;
+            for lane in Ones(taken) {
+                visitors[lane % SIXTEEN].block();
+            }
+            return taken;
+        }
+        for place in Ones(met) {
+            let (prim, triangle) = T::triangle::<K>(items, item, place);
+            let Some(hit) = kernel.intersect(&rays.prepared, &triangle) else {
+                continue;
+            };
+            // What lies outside the interval may be for the kernel to say.
+            let hit_by = if K::EXACT_T {
+                hit.mask.bits()
+            } else {
+                hit.within(rays.t_min, rays.t_max)
+            };
+            let hit_by = hit_by & active;
+            if hit_by == 0 {
+                continue;
+            }
+            let bounds = K::t_error_bound(&rays.prepared, &triangle, hit.t);
+            for lane in Ones(hit_by) {
+                let visitor = &mut visitors[lane % SIXTEEN];
+                let takes = visitor.offer(prim, &hit, lane, || bounds.get(lane));
+                taken |= u32::from(takes) << lane;
+            }
+            if OCCLUSION {
+                active &= !taken;
+            }
+        }
+        taken
     }
 
     type Packet<'p>

@@ -18,10 +18,14 @@ use crate::scene::Mesh;
 use super::packet::Packet;
 use super::pages;
 use super::query::Query;
+use super::slab::{Clip, Scene, WideSlabRay};
 use super::visit::Counter;
 
 /// Lanes of a block.
 pub(super) const LANES: usize = 8;
+
+/// More than a kernel's corners are off, in units of the scene's largest coordinate: 3u, of which an edge's rounding is two.
+const CORNER_PAD: f32 = 2.0 * f32::EPSILON;
 
 /// How a structure's triangles lie in memory.
 pub trait Items: Sized + Send + Sync + 'static {
@@ -49,12 +53,16 @@ pub trait Items: Sized + Send + Sync + 'static {
         item: u32,
     ) -> bool;
 
-    /// Hands each triangle of an item to `take`.
-    fn each_triangle<K: Kernel>(
-        items: &[Self::Item<K>],
-        item: u32,
-        take: impl FnMut(u32, &K::Packed<1>),
-    );
+    /// The triangles of an item of `scene` whose boxes `ray` meets until `limit`, a bit each.
+    fn met_by<K: Kernel, I: Isa>(
+        item: &Self::Item<K>,
+        ray: &WideSlabRay,
+        limit: f32,
+        scene: &Scene,
+    ) -> u32;
+
+    /// The triangle in a lane of an item, and its index; `index` is the item's.
+    fn triangle<K: Kernel>(item: &Self::Item<K>, index: u32, lane: usize) -> (u32, K::Packed<1>);
 
     /// Tests an item against the rays of a packet.
     fn test_packet<K: Kernel, I: Isa>(packet: &mut Packet<'_, '_, Self, K, I>, item: u32);
@@ -83,11 +91,20 @@ pub struct Block<P> {
 }
 
 impl<P> Block<P> {
-    /// The lanes that hold a triangle of their own: those that are left over repeat the last.
+    /// The lanes that hold a triangle of their own, a bit each: those that are left over repeat the last.
     #[inline(always)]
-    fn filled(&self) -> impl Iterator<Item = usize> {
-        let is_repeated = |lane: usize| lane > 0 && self.prims[lane - 1] == self.prims[lane];
-        (0..LANES).filter(move |lane| !is_repeated(*lane))
+    fn filled_lanes(&self) -> u32 {
+        let mut own = 1;
+        for lane in 1..LANES {
+            own |= u32::from(self.prims[lane - 1] != self.prims[lane]) << lane;
+        }
+        own
+    }
+
+    /// As numbers.
+    #[inline(always)]
+    fn filled(&self) -> Ones {
+        Ones(self.filled_lanes())
     }
 }
 
@@ -134,12 +151,13 @@ impl Items for Singles {
     }
 
     #[inline(always)]
-    fn each_triangle<K: Kernel>(
-        items: &[K::Packed<1>],
-        prim: u32,
-        mut take: impl FnMut(u32, &K::Packed<1>),
-    ) {
-        take(prim, &items[prim as usize]);
+    fn met_by<K: Kernel, I: Isa>(_: &K::Packed<1>, _: &WideSlabRay, _: f32, _: &Scene) -> u32 {
+        1
+    }
+
+    #[inline(always)]
+    fn triangle<K: Kernel>(triangle: &K::Packed<1>, prim: u32, _: usize) -> (u32, K::Packed<1>) {
+        (prim, triangle.clone())
     }
 
     #[inline(always)]
@@ -149,7 +167,7 @@ impl Items for Singles {
             1,
             |_, _| true,
             #[inline(always)]
-            |_| (prim, packed.items[prim as usize].clone()),
+            |lane| Self::triangle::<K>(&packed.items[prim as usize], prim, lane),
         );
     }
 
@@ -235,15 +253,33 @@ impl Items for Blocks {
     }
 
     #[inline(always)]
-    fn each_triangle<K: Kernel>(
-        items: &[Self::Item<K>],
-        item: u32,
-        mut take: impl FnMut(u32, &K::Packed<1>),
-    ) {
-        let block = &items[item as usize];
-        for lane in block.filled() {
-            take(block.prims[lane], &K::lane(&block.triangles, lane));
-        }
+    fn met_by<K: Kernel, I: Isa>(
+        block: &Self::Item<K>,
+        ray: &WideSlabRay,
+        limit: f32,
+        scene: &Scene,
+    ) -> u32 {
+        let [a, b, c] = K::corners::<I::X8>(&block.triangles);
+        let pad = I::X8::splat(CORNER_PAD * scene.largest);
+        let bounds = |a: I::X8, b: I::X8, c: I::X8| {
+            let mut bounds = [[0.0; LANES]; 2];
+            (a.min(b).min(c) - pad).write(&mut bounds[0]);
+            (a.max(b).max(c) + pad).write(&mut bounds[1]);
+            bounds
+        };
+        let boxes = [
+            bounds(a.x, b.x, c.x),
+            bounds(a.y, b.y, c.y),
+            bounds(a.z, b.z, c.z),
+        ];
+        let (entry, exit): (I::X8, I::X8) = ray.clip(&boxes, limit);
+        entry.le(exit).bits() & block.filled_lanes()
+    }
+
+    #[inline(always)]
+    fn triangle<K: Kernel>(block: &Self::Item<K>, _: u32, lane: usize) -> (u32, K::Packed<1>) {
+        let lane = lane & (LANES - 1);
+        (block.prims[lane], K::lane(&block.triangles, lane))
     }
 
     #[inline(always)]
@@ -254,19 +290,12 @@ impl Items for Blocks {
         if seen.met == 0 {
             return;
         }
-        let mut met = 0;
-        for lane in block.filled() {
-            met |= 1 << lane;
-        }
         packet.test_triangles(
-            met & seen.met,
+            block.filled_lanes() & seen.met,
             #[inline(always)]
             |lane, dirs| seen.can_be_hit(lane, dirs),
             #[inline(always)]
-            |lane| {
-                let prim = block.prims[lane & (LANES - 1)];
-                (prim, K::lane(&block.triangles, lane))
-            },
+            |lane| Self::triangle::<K>(block, item, lane),
         );
     }
 

@@ -4,21 +4,17 @@
 //! triangles are smaller than the packet, its rays test each other's triangles, and it collapses: then it gives up, its
 //! rays go alone, and so do others after it. What it cost decides how many rays the next one has.
 
-use std::marker::PhantomData;
 use std::ops::Range;
 
 use crate::geometry::Ray;
-use crate::geometry::lanes::{Isa, Task, prefetch};
+use crate::geometry::lanes::prefetch;
 
+use super::batch::{Course, run_apart};
 use super::packet::{MOST, VECTOR};
 use super::{Rays, Structure, Visitor};
 
 /// Cost of a ray in a packet of 64, about in nanoseconds, above which packets of 16 are better.
 const TOO_WIDE: u32 = 20;
-
-/// Cost of a ray in a packet above which it had better not: on two meshes with triangles smaller than a packet (city,
-/// sphereflake) rays go half as fast together, on one with deep gaps (plant) a seventh faster.
-pub(super) const TOO_DEAR: u32 = 120;
 
 /// Cost of a ray in a packet of 16 below which 64 may go together.
 const CHEAP: u32 = 15;
@@ -126,35 +122,27 @@ pub(super) fn alone<'a, S: Structure, R: Rays<'a>>(
     range: Range<usize>,
     scratch: &mut S::Scratch,
 ) {
-    R::Isa::enter(Alone {
-        structure,
-        batch,
-        scratch,
-        range,
-        lifetime: PhantomData,
-    });
+    run_apart::<Alone, S, R>(structure, batch, range, scratch);
 }
 
-/// Rays that go one after another, in a function of their own: within a larger one the compiler keeps less in registers.
-struct Alone<'t, 'a, S: Structure, R: Rays<'a>> {
-    structure: &'t S,
-    batch: &'t mut R,
-    scratch: &'t mut S::Scratch,
-    range: Range<usize>,
-    lifetime: PhantomData<&'a ()>,
-}
+/// Rays go one after another.
+struct Alone;
 
-impl<'a, S: Structure, R: Rays<'a>> Task for Alone<'_, 'a, S, R> {
+impl<S: Structure> Course<S> for Alone {
     type Out = ();
 
     #[inline(always)]
-    fn run<I: Isa>(self) {
-        for index in self.range {
-            let mut visitor = self.batch.begin(index);
-            let ray = &self.batch.rays()[index];
-            self.structure
-                .lead::<R::Isa, _>(ray, self.scratch, &mut visitor);
-            self.batch.finish(index, &visitor);
+    fn run<'a, R: Rays<'a>>(
+        structure: &S,
+        batch: &mut R,
+        range: Range<usize>,
+        scratch: &mut S::Scratch,
+    ) {
+        for index in range {
+            let mut visitor = batch.begin(index);
+            let ray = &batch.rays()[index];
+            structure.lead::<R::Isa, _>(ray, scratch, &mut visitor);
+            batch.finish(index, &visitor);
         }
     }
 }

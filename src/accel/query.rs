@@ -86,6 +86,13 @@ impl<'a, T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool>
         }
     }
 
+    /// Ends a query that any hit will do; which triangle it was does not matter.
+    #[inline(always)]
+    pub fn block(&mut self) {
+        self.best.prim = 0;
+        self.limit = f32::NEG_INFINITY;
+    }
+
     /// Takes the hit of `lane` if it is nearer, or equally near with a lower index; for occlusion any within the interval.
     /// Whether it was taken. `bound`: see [`take`].
     #[inline(always)]

@@ -10,7 +10,7 @@ use std::fmt::Debug;
 
 use serde::Serialize;
 
-use crate::geometry::lanes::{Lane, LaneRay, LaneVec3};
+use crate::geometry::lanes::{Lane, LaneMask, LaneRay, LaneVec3};
 use crate::geometry::{DVec3, Hit, Ray, Vec3};
 use crate::registry::{Choice, ChoiceError, ParamSpec};
 use crate::scene::Mesh;
@@ -58,6 +58,14 @@ pub struct LaneHit<const W: usize, L: Lane<W>> {
     pub u: L,
     /// Barycentric weight of vertex 2; meaningless where `mask` is false.
     pub v: L,
+}
+
+impl<const W: usize, L: Lane<W>> LaneHit<W, L> {
+    /// The lanes that are hit at a `t` within these intervals, a bit each. Both ends belong to them, NaN to none.
+    #[inline(always)]
+    pub(crate) fn within(&self, t_min: L, t_max: L) -> u32 {
+        (self.mask & self.t.ge(t_min) & self.t.le(t_max)).bits()
+    }
 }
 
 /// A ray/triangle intersection method.
@@ -112,6 +120,20 @@ pub trait Kernel: Debug + Clone + Send + Sync + 'static {
         ray: &Self::Prepared<W, L>,
         triangles: &Self::Packed<W>,
     ) -> Option<LaneHit<W, L>>;
+
+    /// Which of many rays a triangle hits, a bit each, at a `t` within the intervals given: what [`Kernel::intersect`] tells of
+    /// it. Here a kernel may do without branches: of a few triangles near a group of rays every second one is hit, and a
+    /// branch is guessed wrong as often. Not asked where [`Kernel::EXACT_T`] is set.
+    #[inline(always)]
+    fn hit_within<L: Lane<1>>(
+        &self,
+        rays: &Self::Prepared<1, L>,
+        triangle: &Self::Packed<1>,
+        [t_min, t_max]: [L; 2],
+    ) -> u32 {
+        let found = self.intersect(rays, triangle);
+        found.map_or(0, |hit| hit.within(t_min, t_max))
+    }
 
     /// A bound on the absolute error of the `t` that this kernel computed for one triangle it accepted.
     ///

@@ -75,6 +75,37 @@ fn size<const W: usize, L: Lane<W>>(v: LaneVec3<L>) -> L {
     v.x.abs() + v.y.abs() + v.z.abs()
 }
 
+impl<const EPS: bool> MollerTrumbore<EPS> {
+    /// The test, whether a lane is hit or none.
+    #[inline(always)]
+    fn meet<const W: usize, L: Lane<W>>(self, ray: &LaneRay<L>, tri: &Packed<W>) -> LaneHit<W, L> {
+        let zero = L::splat(0.0);
+        let one = L::splat(1.0);
+        let e1 = LaneVec3::load(&tri.e1);
+        let e2 = LaneVec3::load(&tri.e2);
+        let p = ray.dir.cross(e2);
+        let det = e1.dot(p);
+        let inv_det = one / det;
+        let s = ray.origin.minus(LaneVec3::load(&tri.v0));
+        let u = s.dot(p) * inv_det;
+        let q = s.cross(e1);
+        let v = ray.dir.dot(q) * inv_det;
+        // A zero determinant makes u, v and t infinite or NaN; `u + v <= 1` alone would let -inf + inf through.
+        let sound = if EPS {
+            det.abs().ge(L::splat(self.eps)) & !det.eq(zero)
+        } else {
+            !det.eq(zero)
+        };
+        let mask = sound & u.ge(zero) & v.ge(zero) & (u + v).le(one);
+        LaneHit {
+            mask,
+            t: e2.dot(q) * inv_det,
+            u,
+            v,
+        }
+    }
+}
+
 impl<const EPS: bool> Kernel for MollerTrumbore<EPS> {
     type Packed<const W: usize> = Packed<W>;
     type Prepared<const W: usize, L: Lane<W>> = LaneRay<L>;
@@ -126,33 +157,18 @@ impl<const EPS: bool> Kernel for MollerTrumbore<EPS> {
         ray: &LaneRay<L>,
         tri: &Packed<W>,
     ) -> Option<LaneHit<W, L>> {
-        let zero = L::splat(0.0);
-        let one = L::splat(1.0);
-        let e1 = LaneVec3::load(&tri.e1);
-        let e2 = LaneVec3::load(&tri.e2);
-        let p = ray.dir.cross(e2);
-        let det = e1.dot(p);
-        let inv_det = one / det;
-        let s = ray.origin.minus(LaneVec3::load(&tri.v0));
-        let u = s.dot(p) * inv_det;
-        let q = s.cross(e1);
-        let v = ray.dir.dot(q) * inv_det;
-        // A zero determinant makes u, v and t infinite or NaN; `u + v <= 1` alone would let -inf + inf through.
-        let sound = if EPS {
-            det.abs().ge(L::splat(self.eps)) & !det.eq(zero)
-        } else {
-            !det.eq(zero)
-        };
-        let mask = sound & u.ge(zero) & v.ge(zero) & (u + v).le(one);
-        if !mask.any() {
-            return None;
-        }
-        Some(LaneHit {
-            mask,
-            t: e2.dot(q) * inv_det,
-            u,
-            v,
-        })
+        let hit = self.meet(ray, tri);
+        hit.mask.any().then_some(hit)
+    }
+
+    #[inline(always)]
+    fn hit_within<L: Lane<1>>(
+        &self,
+        rays: &LaneRay<L>,
+        tri: &Packed<1>,
+        [t_min, t_max]: [L; 2],
+    ) -> u32 {
+        self.meet(rays, tri).within(t_min, t_max)
     }
 
     #[inline(always)]

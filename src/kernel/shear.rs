@@ -125,12 +125,22 @@ fn apart<const W: usize, L: Lane<W>>(u: L, v: L, w: L) -> L::Mask {
     (u.lt(zero) | v.lt(zero) | w.lt(zero)) & (u.gt(zero) | v.gt(zero) | w.gt(zero))
 }
 
-/// Shears the triangles and tests which are hit, with the kernel's edge functions.
+/// As [`meet`]; `None` if none is hit.
 #[inline(always)]
 pub(super) fn test<const W: usize, L: Lane<W>, E: Edge>(
     ray: &Prepared<L>,
     tri: &Corners<W>,
 ) -> Option<Sheared<L, L::Mask>> {
+    let sheared = meet::<W, L, E>(ray, tri);
+    sheared.mask.any().then_some(sheared)
+}
+
+/// Shears the triangles and tests which are hit, with the kernel's edge functions.
+#[inline(always)]
+pub(super) fn meet<const W: usize, L: Lane<W>, E: Edge>(
+    ray: &Prepared<L>,
+    tri: &Corners<W>,
+) -> Sheared<L, L::Mask> {
     let zero = L::splat(0.0);
     let [a, b, c] = sheared(ray, tri);
     let mut u = E::edge(c.x, b.y, c.y, b.x);
@@ -146,11 +156,8 @@ pub(super) fn test<const W: usize, L: Lane<W>, E: Edge>(
     let det = u + v + w;
     // Not so written that NaN passes: it would only give a NaN t.
     let mask = !apart::<W, L>(u, v, w) & (det.lt(zero) | det.gt(zero));
-    if !mask.any() {
-        return None;
-    }
     let z = ray.shear.z;
-    Some(Sheared {
+    Sheared {
         mask,
         edges: [u, v, w],
         det,
@@ -159,7 +166,7 @@ pub(super) fn test<const W: usize, L: Lane<W>, E: Edge>(
             LaneVec3 { z: z * b.z, ..b },
             LaneVec3 { z: z * c.z, ..c },
         ],
-    })
+    }
 }
 
 impl<L: Copy, M> Sheared<L, M> {

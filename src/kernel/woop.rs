@@ -102,6 +102,17 @@ impl<const FUSED: bool> Kernel for Woop<FUSED> {
     }
 
     #[inline(always)]
+    fn hit_within<L: Lane<1>>(
+        &self,
+        rays: &Prepared<L>,
+        tri: &Corners<1>,
+        [t_min, t_max]: [L; 2],
+    ) -> u32 {
+        let met = shear::meet::<1, L, Self>(rays, tri);
+        met.hit().within(t_min, t_max)
+    }
+
+    #[inline(always)]
     fn t_error_bound<const W: usize, L: Lane<W>>(ray: &Prepared<L>, tri: &Corners<W>, t: L) -> L {
         shear::t_error_bound::<W, L, Self>(ray, tri, t)
     }

@@ -61,14 +61,13 @@ impl Search {
     };
 
     fn axes(&self, bounds: &Bounds) -> Range<usize> {
+        if !self.longest_only {
+            return 0..3;
+        }
         let extent = bounds.extent();
         let longer = |a: usize, b: usize| if extent[b] > extent[a] { b } else { a };
         let longest = longer(longer(0, 1), 2);
-        if self.longest_only {
-            longest..longest + 1
-        } else {
-            0..3
-        }
+        longest..longest + 1
     }
 }
 
@@ -95,7 +94,7 @@ pub(super) fn best(mesh: &Mesh, task: &Task, search: Search) -> Option<Plane> {
         Chopped::of(mesh, sample, &bins, axes.clone())
     };
     let chopped = chunked(task.references(), work, |a, b| a.joined(&b));
-    chopped.best(&bins, bounds, each, task.len() + task.room())
+    chopped.best(axes, &bins, bounds, each, task.len() + task.room())
 }
 
 /// Bins of equal width.
@@ -185,10 +184,17 @@ impl Chopped {
     }
 
     /// `each`: references for which one stands; `most`: those of both sides together.
-    fn best(&self, bins: &Bins, bounds: &Bounds, each: usize, most: usize) -> Option<Plane> {
+    fn best(
+        &self,
+        axes: Range<usize>,
+        bins: &Bins,
+        bounds: &Bounds,
+        each: usize,
+        most: usize,
+    ) -> Option<Plane> {
         let scale = bounds.scale();
         let mut best: Option<Plane> = None;
-        for axis in 0..3 {
+        for axis in axes {
             let mut second = [(Bounds::EMPTY, 0); BINS];
             let mut side = (Bounds::EMPTY, 0);
             for bin in (1..BINS).rev() {

@@ -20,41 +20,18 @@
 //! **Source:** the idea of hiding a cache miss behind other lookups is that of O. Kocberber, B. Falsafi and B. Grot,
 //! "Asynchronous Memory Access Chaining", VLDB 2015. **Differs:** a ray is a state that is stepped, there is no queue.
 
-use std::marker::PhantomData;
 use std::ops::Range;
 
-use crate::geometry::lanes::{Isa, Ones, Task, prefetch};
+use crate::geometry::lanes::{Isa, Ones, prefetch};
 
 use super::super::Rays;
+use super::super::batch::Course;
 use super::stack::{FLIGHTS, Stacks};
 use super::walk::Walk;
 use super::{BvhWide, Child, Node};
 
-/// Traces the rays of `batch` in `range`.
-#[inline(always)]
-pub(super) fn trace<'a, R: Rays<'a>>(
-    tree: &BvhWide,
-    batch: &mut R,
-    range: Range<usize>,
-    stacks: &mut Stacks,
-) {
-    R::Isa::enter(Interleaved {
-        tree,
-        batch,
-        range,
-        stacks,
-        lifetime: PhantomData,
-    });
-}
-
-/// Rays that take turns, in a function of its own; see [`super::super::packets`].
-struct Interleaved<'t, 'a, R: Rays<'a>> {
-    tree: &'t BvhWide,
-    batch: &'t mut R,
-    range: Range<usize>,
-    stacks: &'t mut Stacks,
-    lifetime: PhantomData<&'a ()>,
-}
+/// Rays take turns.
+pub(super) struct Interleaved;
 
 /// A ray under way.
 struct Flight<I: Isa, V> {
@@ -79,22 +56,25 @@ impl Kinds {
     }
 }
 
-impl<'a, R: Rays<'a>> Task for Interleaved<'_, 'a, R> {
+impl Course<BvhWide> for Interleaved {
     type Out = ();
 
     #[inline(always)]
-    fn run<I: Isa>(self) {
-        let (tree, batch) = (self.tree, self.batch);
-        let stacks = self.stacks.first(FLIGHTS);
+    fn run<'a, R: Rays<'a>>(
+        tree: &BvhWide,
+        batch: &mut R,
+        mut waiting: Range<usize>,
+        stacks: &mut Stacks,
+    ) {
+        let stacks = stacks.first(FLIGHTS);
         let lines = Lines::of(tree, batch);
-        let mut waiting = self.range;
         let mut flights = Vec::with_capacity(FLIGHTS);
         let mut kinds = Kinds::default();
         let mut under_way = 0_u32;
         for (flight, index) in waiting.by_ref().take(FLIGHTS).enumerate() {
             flights.push(Flight {
                 index,
-                walk: Walk::<I>::new(tree, &batch.rays()[index]),
+                walk: Walk::<R::Isa>::new(tree, &batch.rays()[index]),
                 visitor: batch.begin(index),
             });
             kinds.note(flight, tree.root);
@@ -130,17 +110,17 @@ impl<'a, R: Rays<'a>> Task for Interleaved<'_, 'a, R> {
 }
 
 /// Where nodes and blocks lie in memory, and the bytes of one.
-struct Lines([(*const u8, usize); 2]);
+pub(super) struct Lines([(*const u8, usize); 2]);
 
 impl Lines {
-    fn of<'a, R: Rays<'a>>(tree: &BvhWide, batch: &R) -> Self {
+    pub(super) fn of<'a, R: Rays<'a>>(tree: &BvhWide, batch: &R) -> Self {
         let nodes = (tree.nodes.as_ptr().cast(), size_of::<Node>());
         Self([nodes, (batch.items(), R::ITEM_BYTES)])
     }
 
     /// Asks for what a visit of `child` reads first; for as much where it is a node, since a branch would be guessed wrong.
     #[inline(always)]
-    fn fetch<'a, R: Rays<'a>>(&self, child: Child) {
+    pub(super) fn fetch<'a, R: Rays<'a>>(&self, child: Child) {
         let (base, bytes) = self.0[usize::from(child.is_leaf())];
         prefetch(base.wrapping_add(child.index() * bytes), R::ITEM_BYTES);
     }

@@ -23,6 +23,7 @@ use crate::geometry::lanes::Isa;
 use crate::geometry::{Aabb, Ray};
 use crate::scene::Mesh;
 
+use super::batch::run_apart;
 use super::bvh::{Build, grouped};
 use super::packets;
 use super::slab::{Scene, WideCorners};
@@ -38,6 +39,8 @@ mod validate;
 mod walk;
 mod way;
 
+use hybrid::Hybrid;
+use interleaved::Interleaved;
 use stack::Stacks;
 use walk::Walk;
 use way::Way;
@@ -202,9 +205,9 @@ impl Structure for BvhWide {
             Way::Single => packets::trace(self, batch, stacks, false),
             Way::Packets => packets::trace(self, batch, stacks, true),
             Way::Hybrid => {
-                hybrid::trace(self, batch, all, stacks);
+                run_apart::<Hybrid, _, _>(self, batch, all, stacks);
             }
-            Way::Interleaved => interleaved::trace(self, batch, all, stacks),
+            Way::Interleaved => run_apart::<Interleaved, _, _>(self, batch, all, stacks),
             Way::Mixed => way::mixed(self, batch, all, stacks),
         }
     }

@@ -4,13 +4,17 @@ use std::ops::Range;
 
 use super::super::Rays;
 use super::super::packet::Bundle;
-use super::super::packets::{Refused, TOO_DEAR, Together};
+use super::super::packets::{Refused, Together};
 use super::super::slab::PacketSlabs;
 use super::BvhWide;
 use super::stack::Stacks;
 use super::walk::Walk;
 use super::way;
 use crate::geometry::lanes::Isa;
+
+/// Cost of a ray in a packet above which it had better go with a group: on three meshes with many triangles a pixel (city,
+/// sphereflake, armadillo) primary rays are a tenth to a fifth faster than with a bound of 120.
+const TOO_DEAR: u32 = 45;
 
 impl Together for BvhWide {
     #[inline(always)]

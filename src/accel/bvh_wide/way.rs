@@ -6,10 +6,12 @@ use crate::geometry::Ray;
 use crate::registry::{ParamKind, ParamSpec, Params};
 
 use super::super::Rays;
+use super::super::batch::run_apart;
 use super::super::packets::share_origin;
-use super::hybrid::WINDOW;
+use super::BvhWide;
+use super::hybrid::{Hybrid, WINDOW};
+use super::interleaved::Interleaved;
 use super::stack::Stacks;
-use super::{BvhWide, hybrid, interleaved};
 
 /// How a batch is traced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -100,13 +102,13 @@ pub(super) fn mixed<'a, R: Rays<'a>>(
     while start < end {
         let tried = start..end.min(start + together);
         start = tried.end;
-        if hybrid::trace(tree, batch, tried, stacks).pays() {
+        if run_apart::<Hybrid, _, _>(tree, batch, tried, stacks).pays::<R::Visitor>() {
             together = TOGETHER.end.min(2 * together);
             apart = APART.start;
         } else {
             let turns = start..end.min(start + apart);
             start = turns.end;
-            interleaved::trace(tree, batch, turns, stacks);
+            run_apart::<Interleaved, _, _>(tree, batch, turns, stacks);
             together = TOGETHER.start;
             apart = APART.end.min(2 * apart);
         }

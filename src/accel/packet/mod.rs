@@ -14,7 +14,7 @@
 //! Hierarchies", 2007, for packets with interval arithmetic. **Differs:** the cull of triangles keeps what a kernel's
 //! rounding could accept, so a watertight kernel stays so.
 
-use crate::geometry::lanes::{Isa, Lane, LaneMask, LaneVec3, RayLanes, SIXTEEN};
+use crate::geometry::lanes::{Isa, Lane, LaneMask, LaneVec3, Ones, RayLanes, SIXTEEN};
 use crate::geometry::{Hit, Ray, Vec3};
 use crate::kernel::Kernel;
 
@@ -275,11 +275,8 @@ impl<'a, 'p, T: Items, K: Kernel, I: Isa> Packet<'a, 'p, T, K, I> {
         let mut limit = f32::NEG_INFINITY;
         for (vector, of) in self.vectors.iter_mut().enumerate() {
             let dirs = &bundle.lanes[vector].dirs;
-            let mut rest = met;
             let mut any = false;
-            while rest != 0 {
-                let lane = rest.trailing_zeros() as usize;
-                rest &= rest - 1;
+            for lane in Ones(met) {
                 if !can_be_hit(lane, dirs) {
                     continue;
                 }

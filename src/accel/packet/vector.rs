@@ -1,6 +1,6 @@
 //! Sixteen rays of a packet and their answers so far, a lane each.
 
-use crate::geometry::lanes::{HitLanes, Isa, Lane, LaneMask, LaneRay, LaneVec3, SIXTEEN};
+use crate::geometry::lanes::{HitLanes, Isa, Lane, LaneMask, LaneRay, LaneVec3, Ones, SIXTEEN};
 use crate::geometry::{Hit, Ray};
 use crate::kernel::{Kernel, LaneHit};
 
@@ -130,14 +130,13 @@ impl<K: Kernel, I: Isa> Vector<K, I> {
         rays: &[Ray],
         prim: u32,
         hit: &LaneHit<1, I::Rays>,
-        mut met: u32,
+        met: u32,
     ) {
         let mut hits = self.hits();
         let mut limits = [0.0; SIXTEEN];
         self.limit.write(&mut limits);
-        while met != 0 {
-            let lane = met.trailing_zeros() as usize & (SIXTEEN - 1);
-            met &= met - 1;
+        for lane in Ones(met) {
+            let lane = lane & (SIXTEEN - 1);
             let hit = Hit {
                 t: hit.t.get(lane),
                 u: hit.u.get(lane),

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::super::packet::Bundle;
-use super::super::packets::{Refused, TOO_DEAR, Together};
+use super::super::packets::{Refused, Together};
 use super::super::slab::Pencil;
 use super::super::stack::Room;
 use super::super::{Rays, Visitor};
@@ -26,6 +26,9 @@ fn begin<'a>(
 fn next(walk: &mut Walk<PacketCut>, tree: &PlaneTree, limit: f32) -> Option<Range<u32>> {
     walk.next(tree, limit, &mut Nobody)
 }
+
+/// Cost of a ray in a packet above which it had better go alone.
+const TOO_DEAR: u32 = 120;
 
 impl Together for PlaneTree {
     #[inline(always)]

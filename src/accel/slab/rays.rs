@@ -1,14 +1,21 @@
 //! Sixteen rays, a lane each, against one box.
 //!
 //! The rays come from one octant, so that the near planes of a box are the same for all. The formulas are those of
-//! [`super::wide`], with rays in lanes in place of axes.
+//! [`super::wide`], with rays in lanes in place of axes. One ray more stands for all: it tells of eight boxes at once which
+//! of them none can meet.
+//!
+//! ```text
+//!    o -.__                 least and greatest origin, fastest and slowest direction along an axis:
+//!    o ----=>  |  box  |    the hull meets the near planes first with the former of each, the far ones last
+//!    o -'"                  with the latter
+//! ```
 
 use crate::geometry::lanes::{Lane, LaneMask, RayLanes};
 
 use super::wide::{FAR, Scene, is_plain, moved, padded, share};
 use super::{CONE, WideCorners, WideSlabRay};
 
-/// The rays.
+/// The rays. What is computed of one that is not plain means nothing.
 #[derive(Debug, Clone, Copy)]
 pub(in super::super) struct SlabRays<L> {
     /// Of each axis for the near and the far planes.
@@ -17,12 +24,16 @@ pub(in super::super) struct SlabRays<L> {
     /// Which side they come from: 1 where their directions are negative.
     near: [usize; 3],
     t_min: L,
+    /// A bit for each that is plain.
+    pub plain: u32,
+    /// Meets every box that a plain one meets.
+    pub hull: WideSlabRay,
 }
 
 impl<L: Lane<1>> SlabRays<L> {
-    /// The rays, all with direction signs `near`, and a bit for each that is plain; what is computed of others means nothing.
+    /// The rays, all with direction signs `near`.
     #[inline(always)]
-    pub fn new(rays: &RayLanes<L>, near: [usize; 3], scene: &Scene) -> (Self, u32) {
+    pub fn new(rays: &RayLanes<L>, near: [usize; 3], scene: &Scene) -> Self {
         let (origin, dir, t_min) = (&rays.lines.origin, &rays.lines.dir, rays.t_min);
         let shortest = dir.x.abs().min(dir.y.abs()).min(dir.z.abs());
         let longest = dir.largest();
@@ -31,13 +42,49 @@ impl<L: Lane<1>> SlabRays<L> {
         let (x, x_offset) = Self::axis(origin.x, dir.x, width);
         let (y, y_offset) = Self::axis(origin.y, dir.y, width);
         let (z, z_offset) = Self::axis(origin.z, dir.z, width);
-        let rays = Self {
+        let mut rays = Self {
             inverse: [x, y, z],
             offset: [x_offset, y_offset, z_offset],
             near,
             t_min,
+            plain: is_plain.bits(),
+            hull: WideSlabRay::NONE,
         };
-        (rays, is_plain.bits())
+        rays.hull = rays.hull_of([origin.x, origin.y, origin.z], is_plain);
+        rays
+    }
+
+    /// A ray that meets each box no later and leaves it no earlier than any of the `plain` ones.
+    ///
+    /// Nothing lies behind a plain ray, so where a plane is behind the hull it may be as far behind as it likes.
+    #[inline(always)]
+    fn hull_of(&self, origins: [L; 3], plain: L::Mask) -> WideSlabRay {
+        let least = |x| L::select(plain, x, L::splat(f32::INFINITY)).least();
+        let greatest = |x| L::select(plain, x, L::splat(f32::NEG_INFINITY)).greatest();
+        let mut hull = WideSlabRay {
+            near: self.near,
+            ..WideSlabRay::NONE
+        };
+        for (axis, origin) in origins.into_iter().enumerate() {
+            let [near, far] = self.inverse[axis];
+            let (least_origin, greatest_origin) = (least(origin), greatest(origin));
+            let ((first, near), (last, far)) = if self.near[axis] == 0 {
+                (
+                    (greatest_origin, least(near)),
+                    (least_origin, greatest(far)),
+                )
+            } else {
+                (
+                    (least_origin, greatest(near)),
+                    (greatest_origin, least(far)),
+                )
+            };
+            hull.inverse[axis] = near;
+            hull.inverse[FAR + axis] = far;
+            hull.offset[axis] = padded(first * near, -1.0);
+            hull.offset[FAR + axis] = padded(last * far, 1.0);
+        }
+        hull
     }
 
     /// Inverses and offsets of one axis, for near planes and far ones.

@@ -84,10 +84,10 @@ impl Task for InLanes {
             .dir
             .to_array()
             .map(|d| usize::from(d.is_sign_negative()));
-        let (rays, plain) = SlabRays::new(&I::rays(&[ray; 16]), near, &scene);
+        let rays = SlabRays::new(&I::rays(&[ray; 16]), near, &scene);
         let (entry, exit) = rays.clip(&boxes, 3, I::Rays::splat(f32::INFINITY));
         let of_sixteen = entry.le(exit).bits() >> 5 & 1 == 1;
-        (met != 0, (plain >> 5 & 1 == 1).then_some(of_sixteen))
+        (met != 0, (rays.plain >> 5 & 1 == 1).then_some(of_sixteen))
     }
 }
 
@@ -226,6 +226,85 @@ impl Task for Together<'_> {
         assert_eq!(met & !(1 << 6), 0, "a lane without a box was met");
         Some(met != 0)
     }
+}
+
+/// Sixteen rays from one octant and a box among eight, in the lanes of an instruction set: whether the hull of those that are
+/// plain meets the box, and which of them do.
+struct Hulled<'a> {
+    rays: &'a [Ray; 16],
+    aabb: Aabb,
+}
+
+impl Task for Hulled<'_> {
+    type Out = (bool, u32, u32);
+
+    fn run<I: Isa>(self) -> Self::Out {
+        let Self { rays, aabb } = self;
+        let mut boxes: WideCorners = [[[f32::INFINITY; 8], [f32::NEG_INFINITY; 8]]; 3];
+        for (axis, [least, greatest]) in boxes.iter_mut().enumerate() {
+            (least[5], greatest[5]) = (aabb.min[axis], aabb.max[axis]);
+        }
+        let dir = rays[0].dir.to_array();
+        let near = dir.map(|d| usize::from(d.is_sign_negative()));
+        let rays = SlabRays::new(&I::rays(rays), near, &Scene::new(aabb));
+        let (entry, exit): (I::X8, I::X8) = rays.hull.clip(&boxes, f32::INFINITY);
+        let met = entry.le(exit).bits();
+        assert_eq!(met & !(1 << 5), 0, "a lane without a box was met");
+        let (entry, exit) = rays.clip(&boxes, 5, I::Rays::splat(f32::INFINITY));
+        (met != 0, entry.le(exit).bits(), rays.plain)
+    }
+}
+
+#[test]
+fn a_hull_meets_what_one_of_its_plain_rays_touches_and_misses_what_is_beside_them_all() {
+    let mut dice = Dice::new(9);
+    let (mut met, mut missed, mut odd) = (0, 0, 0);
+    for _ in 0..20_000 {
+        let (a, b) = (numbers(&mut dice, 1 << 12), numbers(&mut dice, 1 << 12));
+        let lead = Case {
+            origin: numbers(&mut dice, 1 << 13),
+            dir: numbers(&mut dice, 1 << 10),
+            least: [0, 1, 2].map(|i: usize| a[i].min(b[i])),
+            greatest: [0, 1, 2].map(|i: usize| a[i].max(b[i])),
+        };
+        let [from, turn] = [(); 2].map(|()| [1, 16, 256][dice.below(3) as usize]);
+        let cases: [Case; 16] = std::array::from_fn(|lane| {
+            let (from, turn) = (numbers(&mut dice, from), numbers(&mut dice, turn));
+            Case {
+                origin: [0, 1, 2].map(|i: usize| lead.origin[i] + from[i]),
+                // Within the octant; now and then across an axis, which is not plain.
+                dir: [0, 1, 2].map(|i: usize| {
+                    let d = (lead.dir[i] + turn[i]).abs().max(i64::from(lane % 7 != 0));
+                    if lead.dir[i] < 0 { -d } else { d }
+                }),
+                ..lead
+            }
+        });
+        let rays = cases.each_ref().map(|case| {
+            let mut ray = case.floats(1.0, 1.0, 0.0).0;
+            for (d, of) in [0, 1, 2].map(|i: usize| (i, lead.dir[i])) {
+                ray.dir[d] = ray.dir[d].copysign(if of < 0 { -1.0 } else { 1.0 });
+            }
+            ray
+        });
+        if rays.iter().any(|ray| ray.dir == Vec3::ZERO) {
+            continue;
+        }
+        let aabb = lead.floats(1.0, 1.0, 0.0).1;
+        for set in InstructionSet::ALL.into_iter().filter(|s| s.is_available()) {
+            let (by_hull, by_rays, plain) = set.run(Hulled { rays: &rays, aabb });
+            for (lane, case) in cases.iter().enumerate() {
+                let touched = plain >> lane & 1 == 1 && case.touches(0);
+                assert!(by_hull || !touched, "{set}: missed {case:?} of {cases:?}");
+            }
+            assert!(by_hull || by_rays & plain == 0, "{set}: {cases:?}");
+            met += u32::from(by_rays & plain != 0);
+            missed += u32::from(!by_hull);
+            odd += u32::from(plain != 0xffff);
+        }
+    }
+    let all = [met, missed, odd];
+    assert!(all.iter().all(|count| *count > 1000), "{all:?}");
 }
 
 /// 20,000 boxes, each with the rays of a packet that `make` gives beside it: they have one origin.

@@ -24,16 +24,16 @@ pub(in super::super) trait Clip<L> {
 
 /// What holds all boxes that a ray will be tested against.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in super::super) struct Scene {
+pub struct Scene {
     /// Its box.
     pub bounds: Aabb,
     /// The largest absolute value of a coordinate.
-    pub(super) largest: f32,
+    pub largest: f32,
 }
 
 /// A ray prepared for boxes within one scene, eight at a time: numbers, which are spread over lanes where they are used.
 #[derive(Debug, Clone, Copy)]
-pub(in super::super) struct WideSlabRay {
+pub struct WideSlabRay {
     /// For the near planes of x, y and z, and from [`FAR`] on for the far ones.
     pub(super) inverse: [f32; 8],
     pub(super) offset: [f32; 8],
@@ -127,7 +127,7 @@ fn numbers<L: Lane<8>>(lanes: L) -> [f32; 8] {
 }
 
 impl WideSlabRay {
-    /// A ray that meets nothing known: for a walk that tests no box.
+    /// A ray of which nothing is known: for a walk that tests no box.
     pub const NONE: Self = Self {
         inverse: [0.0; 8],
         offset: [0.0; 8],

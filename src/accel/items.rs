@@ -308,3 +308,98 @@ impl Items for Blocks {
         set.run(task)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::testbed::{Dice, mesh};
+    use super::*;
+    use crate::geometry::Vec3;
+    use crate::kernel::{self, KernelUser};
+
+    /// A ray and a block of triangles: which of them the kernel hits, and the boxes of which are met.
+    struct Asked<'a, K: Kernel> {
+        kernel: &'a K,
+        mesh: &'a Mesh,
+        ray: Ray,
+    }
+
+    impl<K: Kernel> Task for Asked<'_, K> {
+        type Out = (u32, u32);
+
+        fn run<I: Isa>(self) -> Self::Out {
+            let Self { kernel, mesh, ray } = self;
+            let block = &Blocks::pack(kernel, mesh, &[0, 1, 2, 3, 4, 5, 5, 5])[0];
+            let prepared = Blocks::prepare::<K, I>(kernel, &ray);
+            let hit = kernel.intersect(&prepared, &block.triangles);
+            let scene = Scene::new(mesh.bounds());
+            let slabs = WideSlabRay::new::<I::X8>(&ray, &scene);
+            let met = Blocks::met_by::<K, I>(block, &slabs, f32::INFINITY, &scene);
+            (hit.map_or(0, |hit| hit.mask.bits()), met)
+        }
+    }
+
+    /// Six small triangles far from zero, so that the edges that a kernel keeps are rounded, and a ray from nearby along the
+    /// rim of one: no triangle that is hit is left out, none is met twice, and most of the others are not met.
+    struct NoHitIsLeftOut;
+
+    impl KernelUser for NoHitIsLeftOut {
+        type Out = ();
+
+        fn with<K: Kernel>(self, kernel: K) {
+            let mut dice = Dice::new(3);
+            let (mut hits, mut met, mut asked) = (0, 0, 0);
+            for _ in 0..2_000 {
+                let at = 1e4 * dice.vector();
+                let corner = |dice: &mut Dice| at + 8.0 * dice.vector();
+                let triangles: Vec<[Vec3; 3]> = (0..6)
+                    .map(|_| {
+                        let first = corner(&mut dice);
+                        [first, first + dice.vector(), first + dice.vector()]
+                    })
+                    .collect();
+                let mesh = mesh(&triangles);
+                let [a, b, _] = triangles[dice.below(6) as usize];
+                let rim = a.lerp(b, [0.0, 0.5, 1.0][dice.below(3) as usize]);
+                let from = rim + 0.25 * dice.vector();
+                let ray = Ray::new(from, rim - from);
+                if !ray.is_valid() {
+                    continue;
+                }
+                for set in InstructionSet::ALL.into_iter().filter(|s| s.is_available()) {
+                    let mesh = &mesh;
+                    let (of_kernel, of_boxes) = set.run(Asked {
+                        kernel: &kernel,
+                        mesh,
+                        ray,
+                    });
+                    let ahead = of_kernel & 0b11_1111;
+                    let ahead = ahead & in_front(mesh, &ray);
+                    assert_eq!(ahead & !of_boxes, 0, "{set}: {ray:?}, {triangles:?}");
+                    assert_eq!(of_boxes & !0b11_1111, 0, "{set}: a lane that is left over");
+                    hits += ahead.count_ones();
+                    met += of_boxes.count_ones();
+                    asked += 6;
+                }
+            }
+            assert!(
+                hits > 1000 && 4 * met < asked,
+                "{hits} hits, {met} met of {asked}"
+            );
+        }
+    }
+
+    /// The triangles of a mesh that have no corner behind a ray's origin, a bit each.
+    fn in_front(mesh: &Mesh, ray: &Ray) -> u32 {
+        let ahead = |corner: &Vec3| (*corner - ray.origin).dot(ray.dir) > 0.0;
+        let all = |prim: u32| mesh.corners(prim).iter().all(ahead);
+        (0..mesh.len() as u32).fold(0, |bits, prim| bits | u32::from(all(prim)) << prim)
+    }
+
+    #[test]
+    fn boxes_of_a_blocks_triangles_leave_out_no_hit() {
+        for name in ["moller-trumbore", "woop"] {
+            let kernel = kernel::parse(name).expect("a kernel");
+            kernel::dispatch(&kernel, NoHitIsLeftOut).expect("a kernel");
+        }
+    }
+}

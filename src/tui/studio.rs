@@ -27,6 +27,12 @@ const KEPT_SCENES: usize = 3;
 /// How long the speed of a picture is measured: an impression, not a measurement.
 const IMPRESSION: Duration = Duration::from_millis(60);
 
+/// Rays a thread that are traced before anyone asks whether to go on, at first.
+const FIRST_SLICE: usize = 256;
+
+/// Where a slice took less than this, the next has twice as many.
+const SOON: Duration = Duration::from_millis(5);
+
 /// Most rays whose work is counted: brute force on a large scene should not hold the picture up.
 const MOST_COUNTED: usize = 4096;
 
@@ -250,25 +256,33 @@ impl Worker {
         let accel = structure.accel.as_ref();
         let mut hits = vec![Hit::MISS; rays.len()];
         let (mut traced, mut seconds) = (0, 0.0);
-        // A batch a thread at a time, so that a slow structure is given up soon.
-        let chunk = trace::BATCH * rayon::current_num_threads();
+        // Few rays at first, at most a batch a thread, so that a slow structure is given up soon.
+        let threads = rayon::current_num_threads();
+        let (mut slice, most) = (FIRST_SLICE * threads, trace::BATCH * threads);
         // The whole picture at least once: its parts differ in what they cost.
         while seconds < IMPRESSION.as_secs_f64() && !rays.is_empty() {
-            for (rays, hits) in rays.chunks(chunk).zip(hits.chunks_mut(chunk)) {
+            let mut from = 0;
+            while from < rays.len() {
                 if self.cancelled() {
                     return None;
                 }
+                let range = from..rays.len().min(from + slice);
                 let start = Instant::now();
-                trace::closest_into(accel, rays, hits);
-                seconds += start.elapsed().as_secs_f64();
-                traced += rays.len();
+                trace::closest_into(accel, &rays[range.clone()], &mut hits[range.clone()]);
+                let took = start.elapsed();
+                seconds += took.as_secs_f64();
+                traced += range.len();
+                from = range.end;
+                if took < SOON {
+                    slice = most.min(2 * slice);
+                }
             }
         }
         // Every k-th ray, so that the counted part stands for the whole picture.
         let step = (rays.len() / MOST_COUNTED).max(1);
         let some: Vec<Ray> = rays.iter().step_by(step).copied().collect();
         let (mut steps, mut tests, mut hit) = (0.0, 0.0, 0);
-        for rays in some.chunks(chunk) {
+        for rays in some.chunks(slice) {
             if self.cancelled() {
                 return None;
             }

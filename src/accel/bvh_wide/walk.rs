@@ -47,11 +47,8 @@ impl<I: Isa, C: Clip<I::X8>> Walk<I, C> {
     #[inline(always)]
     pub fn along(slabs: C, tree: &BvhWide, entry: f32) -> Self {
         Self {
-            slabs,
-            lanes: PhantomData,
-            next: tree.root,
             entry,
-            waiting: 0,
+            ..Self::from(slabs, tree.root)
         }
     }
 
@@ -101,8 +98,7 @@ impl<I: Isa, C: Clip<I::X8>> Walk<I, C> {
         let node = self.node(tree);
         let (entries, met) = self.meet(node, visitor);
         self.push::<V>(node, entries, met, stack);
-        self.next = stack.top(self.waiting);
-        self.waiting = self.waiting.saturating_sub(1);
+        self.take(stack);
     }
 
     /// Visits a leaf; of what waits, what begins beyond the hit that it may have is dropped at once. Where none is left,
@@ -120,8 +116,7 @@ impl<I: Isa, C: Clip<I::X8>> Walk<I, C> {
         if V::ORDERED && now < limit {
             self.waiting = stack.keep::<I>(self.waiting, now);
         }
-        self.next = stack.top(self.waiting);
-        self.waiting = self.waiting.saturating_sub(1);
+        self.take(stack);
     }
 
     #[inline(always)]
@@ -142,7 +137,14 @@ impl<I: Isa, C: Clip<I::X8>> Walk<I, C> {
         self.waiting = stack.push::<I>(self.waiting, entries, met, &node.children, V::ORDERED);
     }
 
-    /// Takes the child on top.
+    /// Takes the child on top, or [`Child::END`] where none waits.
+    #[inline(always)]
+    fn take(&mut self, stack: &Stack) {
+        self.next = stack.top(self.waiting);
+        self.waiting = self.waiting.saturating_sub(1);
+    }
+
+    /// Takes the child on top, and its entry.
     #[inline(always)]
     fn pop(&mut self, stack: &Stack) {
         (self.next, self.entry) = (stack.top(self.waiting), stack.top_entry(self.waiting));

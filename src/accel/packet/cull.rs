@@ -31,14 +31,14 @@ impl Seen {
     pub fn new<L: Lane<8>>([a, b, c]: &[LaneVec3<L>; 3], dirs: &[Vec3; 2]) -> Self {
         let far = a.largest().max(b.largest()).max(c.largest());
         let fast = dirs[0].abs().max(dirs[1].abs()).max_element();
-        // 32 roundings of a product of two distances and a direction's component, for each of three components. If all of them
+        // 48 roundings of a product of two distances and a direction's component, for each of three components. If all of them
         // added up, these sides were off by 14 (two corners, the products, a difference, the dot product; 17 where a corner is
         // a sum), so no triangle is left out that a ray meets. What is over keeps those that a kernel lets it meet by rounding:
         // if all added up, the shear's edge functions were off by 21, a weight of `moller-trumbore` by 28 (six products of a
-        // distance, a direction and an edge of up to twice a distance, seven roundings each); of both signs, few remain.
+        // distance, a direction and an edge of up to twice a distance, seven roundings each), which makes 45 in all.
         // The last term is more than underflow can take, of coordinates and of directions; a normal number, since others are
         // added a hundred times slower.
-        let slack = far * far * L::splat(fast * 96.0 * 0.5 * f32::EPSILON)
+        let slack = far * far * L::splat(fast * 144.0 * 0.5 * f32::EPSILON)
             + L::splat((fast + 1.0) * f32::MIN_POSITIVE);
         let in_range = (far * far * L::splat(fast)).lt(L::splat(RANGE));
         let slack = L::select(in_range, slack, L::splat(f32::INFINITY));

@@ -270,11 +270,11 @@ impl<'a, T: Items, K: Kernel, I: Isa, A: Answer, const OCCLUSION: bool> Rays<'a>
             };
             // What lies outside the interval may be for the kernel to say.
             let hit_by = if K::EXACT_T {
-                hit.mask.bits()
+                hit.mask
             } else {
                 hit.within(rays.t_min, rays.t_max)
             };
-            let hit_by = hit_by & active;
+            let hit_by = hit_by.bits() & active;
             if hit_by == 0 {
                 continue;
             }

@@ -236,9 +236,8 @@ impl Items for Blocks {
         let Some(hit) = found else {
             return false;
         };
-        // NaN is left out.
-        let near = hit.t.ge(I::X8::splat(query.t_least())) & hit.t.le(I::X8::splat(query.t_most()));
-        let met = (hit.mask & near).bits();
+        let [least, most] = [query.t_least(), query.t_most()].map(I::X8::splat);
+        let met = hit.within(least, most).bits();
         if met == 0 {
             return false;
         }

@@ -61,10 +61,10 @@ pub struct LaneHit<const W: usize, L: Lane<W>> {
 }
 
 impl<const W: usize, L: Lane<W>> LaneHit<W, L> {
-    /// The lanes that are hit at a `t` within these intervals, a bit each. Both ends belong to them, NaN to none.
+    /// The lanes that are hit at a `t` within these intervals. Both ends belong to them, NaN to none.
     #[inline(always)]
-    pub(crate) fn within(&self, t_min: L, t_max: L) -> u32 {
-        (self.mask & self.t.ge(t_min) & self.t.le(t_max)).bits()
+    pub(crate) fn within(&self, t_min: L, t_max: L) -> L::Mask {
+        self.mask & self.t.ge(t_min) & self.t.le(t_max)
     }
 }
 
@@ -132,7 +132,7 @@ pub trait Kernel: Debug + Clone + Send + Sync + 'static {
         [t_min, t_max]: [L; 2],
     ) -> u32 {
         let found = self.intersect(rays, triangle);
-        found.map_or(0, |hit| hit.within(t_min, t_max))
+        found.map_or(0, |hit| hit.within(t_min, t_max).bits())
     }
 
     /// A bound on the absolute error of the `t` that this kernel computed for one triangle it accepted.

@@ -168,7 +168,7 @@ impl<const EPS: bool> Kernel for MollerTrumbore<EPS> {
         tri: &Packed<1>,
         [t_min, t_max]: [L; 2],
     ) -> u32 {
-        self.meet(rays, tri).within(t_min, t_max)
+        self.meet(rays, tri).within(t_min, t_max).bits()
     }
 
     #[inline(always)]

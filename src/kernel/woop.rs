@@ -8,7 +8,7 @@
 //! **Source:** S. Woop, C. Benthin and I. Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
 //! **Differs:** see [`super::shear`]; a triangle without area is made one point when it is packed.
 
-use crate::geometry::lanes::{Lane, LaneRay, LaneVec3};
+use crate::geometry::lanes::{Lane, LaneMask, LaneRay, LaneVec3};
 use crate::geometry::{Ray, Vec3};
 use crate::registry::Params;
 
@@ -109,7 +109,7 @@ impl<const FUSED: bool> Kernel for Woop<FUSED> {
         [t_min, t_max]: [L; 2],
     ) -> u32 {
         let met = shear::meet::<1, L, Self>(rays, tri);
-        met.hit().within(t_min, t_max)
+        met.hit().within(t_min, t_max).bits()
     }
 
     #[inline(always)]

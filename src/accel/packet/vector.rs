@@ -65,7 +65,7 @@ impl<K: Kernel, I: Isa> Vector<K, I> {
             least = least - (least.abs() * ulps + least_normal);
             most = most + (most.abs() * ulps + least_normal);
         }
-        let near = hit.mask & hit.t.ge(least) & hit.t.le(most);
+        let near = hit.within(least, most);
         if !near.any() {
             return false;
         }

@@ -42,33 +42,37 @@ impl<L: Lane<1>> SlabRays<L> {
         let (x, x_offset) = Self::axis(origin.x, dir.x, width);
         let (y, y_offset) = Self::axis(origin.y, dir.y, width);
         let (z, z_offset) = Self::axis(origin.z, dir.z, width);
-        let mut rays = Self {
-            inverse: [x, y, z],
+        let (inverse, origins) = ([x, y, z], [origin.x, origin.y, origin.z]);
+        Self {
+            inverse,
             offset: [x_offset, y_offset, z_offset],
             near,
             t_min,
             plain: is_plain.bits(),
-            hull: WideSlabRay::NONE,
-        };
-        rays.hull = rays.hull_of([origin.x, origin.y, origin.z], is_plain);
-        rays
+            hull: Self::hull(origins, inverse, near, is_plain),
+        }
     }
 
     /// A ray that meets each box no later and leaves it no earlier than any of the `plain` ones.
     ///
     /// Nothing lies behind a plain ray, so where a plane is behind the hull it may be as far behind as it likes.
     #[inline(always)]
-    fn hull_of(&self, origins: [L; 3], plain: L::Mask) -> WideSlabRay {
+    fn hull(
+        origins: [L; 3],
+        inverse: [[L; 2]; 3],
+        near_sides: [usize; 3],
+        plain: L::Mask,
+    ) -> WideSlabRay {
         let least = |x| L::select(plain, x, L::splat(f32::INFINITY)).least();
         let greatest = |x| L::select(plain, x, L::splat(f32::NEG_INFINITY)).greatest();
         let mut hull = WideSlabRay {
-            near: self.near,
+            near: near_sides,
             ..WideSlabRay::NONE
         };
         for (axis, origin) in origins.into_iter().enumerate() {
-            let [near, far] = self.inverse[axis];
+            let [near, far] = inverse[axis];
             let (least_origin, greatest_origin) = (least(origin), greatest(origin));
-            let ((first, near), (last, far)) = if self.near[axis] == 0 {
+            let ((first, near), (last, far)) = if near_sides[axis] == 0 {
                 (
                     (greatest_origin, least(near)),
                     (least_origin, greatest(far)),

@@ -58,6 +58,15 @@ impl Case {
     }
 }
 
+/// Eight boxes, all but that in `lane` of no child.
+fn only(lane: usize, aabb: Aabb) -> WideCorners {
+    let mut boxes: WideCorners = [[[f32::INFINITY; 8], [f32::NEG_INFINITY; 8]]; 3];
+    for (axis, [least, greatest]) in boxes.iter_mut().enumerate() {
+        (least[lane], greatest[lane]) = (aabb.min[axis], aabb.max[axis]);
+    }
+    boxes
+}
+
 /// A box among eight, and a ray among sixteen, in the lanes of an instruction set.
 struct InLanes {
     ray: Ray,
@@ -71,10 +80,7 @@ impl Task for InLanes {
     fn run<I: Isa>(self) -> Self::Out {
         let Self { ray, aabb } = self;
         let scene = Scene::new(aabb);
-        let mut boxes: WideCorners = [[[f32::INFINITY; 8], [f32::NEG_INFINITY; 8]]; 3];
-        for (axis, [least, greatest]) in boxes.iter_mut().enumerate() {
-            (least[3], greatest[3]) = (aabb.min[axis], aabb.max[axis]);
-        }
+        let boxes = only(3, aabb);
         let wide = WideSlabRay::new::<I::X8>(&ray, &scene);
         let (entry, exit): (I::X8, I::X8) = wide.clip(&boxes, f32::INFINITY);
         let met = entry.le(exit).bits();
@@ -217,10 +223,7 @@ impl Task for Together<'_> {
     fn run<I: Isa>(self) -> Option<bool> {
         let bundle = Bundle::new::<I>(self.rays);
         let slabs = PacketSlabs::<I::X8>::new(&bundle, &self.aabb)?;
-        let mut boxes: WideCorners = [[[f32::INFINITY; 8], [f32::NEG_INFINITY; 8]]; 3];
-        for (axis, [least, greatest]) in boxes.iter_mut().enumerate() {
-            (least[6], greatest[6]) = (self.aabb.min[axis], self.aabb.max[axis]);
-        }
+        let boxes = only(6, self.aabb);
         let (entry, exit): (I::X8, I::X8) = slabs.clip(&boxes, f32::INFINITY);
         let met = entry.le(exit).bits();
         assert_eq!(met & !(1 << 6), 0, "a lane without a box was met");
@@ -240,10 +243,7 @@ impl Task for Hulled<'_> {
 
     fn run<I: Isa>(self) -> Self::Out {
         let Self { rays, aabb } = self;
-        let mut boxes: WideCorners = [[[f32::INFINITY; 8], [f32::NEG_INFINITY; 8]]; 3];
-        for (axis, [least, greatest]) in boxes.iter_mut().enumerate() {
-            (least[5], greatest[5]) = (aabb.min[axis], aabb.max[axis]);
-        }
+        let boxes = only(5, aabb);
         let dir = rays[0].dir.to_array();
         let near = dir.map(|d| usize::from(d.is_sign_negative()));
         let rays = SlabRays::new(&I::rays(rays), near, &Scene::new(aabb));

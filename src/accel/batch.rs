@@ -66,21 +66,21 @@ pub trait Rays<'a> {
     /// Whether its kernel is worth compiling every way of tracing a batch for: where not, rays go one by one.
     const WAYS: bool;
 
+    /// Whether one triangle is tested against sixteen rays. Where any hit will do, a kernel that compares hits more exactly than
+    /// their `t` tells is faster ray by ray: it had better not begin with a hit near an end of the interval.
+    const GROUPS: bool;
+
     /// Sixteen rays as the kernel reads them.
     type Sixteen;
 
-    /// Rays in lanes, of which `lead` is one; `None` where the kernel wants them one by one.
-    fn sixteen(
-        &self,
-        lead: &Ray,
-        lanes: &RayLanes<<Self::Isa as Isa>::Rays>,
-    ) -> Option<Self::Sixteen>;
+    /// Rays in lanes, of which `lead` is one.
+    fn sixteen(&self, lead: &Ray, lanes: &RayLanes<<Self::Isa as Isa>::Rays>) -> Self::Sixteen;
 
     /// The triangles of an item of `scene` whose boxes `ray` meets until `limit`, a bit each.
     fn met_by(&self, item: u32, ray: &WideSlabRay, limit: f32, scene: &Scene) -> u32;
 
     /// Tests those triangles of an item whose bit is set in `met`, one by one, against those of sixteen rays whose bit is set
-    /// in `active`; each has its visitor. Returns a bit for each that took a hit.
+    /// in `active`; each has its visitor. Returns a bit for each that took a hit. Asked only where [`Rays::GROUPS`] is set.
     fn test_sixteen(
         &self,
         rays: &Self::Sixteen,
@@ -95,15 +95,14 @@ pub trait Rays<'a> {
     where
         'a: 'p;
 
-    /// The visitor of a packet, the first ray of which has index `first`; handed back by [`Rays::finish_packet`]. `None`
-    /// where the kernel wants its rays one by one. It gives up, and ends the traversal, when its cost exceeds `budget`, about
-    /// nanoseconds.
+    /// The visitor of a packet, the first ray of which has index `first`; handed back by [`Rays::finish_packet`]. It gives up,
+    /// and ends the traversal, when its cost exceeds `budget`, about nanoseconds.
     fn begin_packet<'p>(
         &mut self,
         bundle: &'p Bundle<'a, <Self::Isa as Isa>::Rays>,
         first: usize,
         budget: u32,
-    ) -> Option<Self::Packet<'p>>;
+    ) -> Self::Packet<'p>;
 
     /// Takes the answers of a packet and returns what it cost; `None` if it gave up.
     fn finish_packet(&mut self, packet: Self::Packet<'_>) -> Option<u32>;
@@ -219,19 +218,17 @@ impl<'a, T: Items, K: Kernel, I: Isa, A: Answer, const OCCLUSION: bool> Rays<'a>
 
     const WAYS: bool = K::PACKETS && I::SIXTEEN;
 
+    const GROUPS: bool = Self::WAYS && !(OCCLUSION && K::EXACT_T);
+
     type Sixteen = Sixteen<K, I>;
 
     #[inline(always)]
-    fn sixteen(&self, lead: &Ray, lanes: &RayLanes<I::Rays>) -> Option<Self::Sixteen> {
-        let alike = K::same_frame(lead, &lanes.lines.dir);
-        alike.then(
-            #[inline(always)]
-            || Sixteen {
-                prepared: self.packed.kernel.prepare(lead, &lanes.lines),
-                t_min: lanes.t_min,
-                t_max: lanes.t_max,
-            },
-        )
+    fn sixteen(&self, lead: &Ray, lanes: &RayLanes<I::Rays>) -> Self::Sixteen {
+        Sixteen {
+            prepared: self.packed.kernel.prepare(lead, &lanes.lines),
+            t_min: lanes.t_min,
+            t_max: lanes.t_max,
+        }
     }
 
     #[inline(always)]
@@ -243,7 +240,7 @@ impl<'a, T: Items, K: Kernel, I: Isa, A: Answer, const OCCLUSION: bool> Rays<'a>
     fn test_sixteen(
         &self,
         rays: &Self::Sixteen,
-        mut active: u32,
+        active: u32,
         item: u32,
         met: u32,
         visitors: &mut [Self::Visitor],
@@ -251,7 +248,7 @@ impl<'a, T: Items, K: Kernel, I: Isa, A: Answer, const OCCLUSION: bool> Rays<'a>
         let kernel = &self.packed.kernel;
         let items = &self.packed.items[item as usize];
         let mut taken = 0;
-        if OCCLUSION && !K::EXACT_T {
+        if OCCLUSION {
             let intervals = [rays.t_min, rays.t_max];
             for place in Ones(met) {
                 let (_, triangle) = T::triangle::<K>(items, item, place);
@@ -284,9 +281,6 @@ impl<'a, T: Items, K: Kernel, I: Isa, A: Answer, const OCCLUSION: bool> Rays<'a>
                 let takes = visitor.offer(prim, &hit, lane, || bounds.get(lane));
                 taken |= u32::from(takes) << lane;
             }
-            if OCCLUSION {
-                active &= !taken;
-            }
         }
         taken
     }
@@ -302,13 +296,9 @@ impl<'a, T: Items, K: Kernel, I: Isa, A: Answer, const OCCLUSION: bool> Rays<'a>
         bundle: &'p Bundle<'a, I::Rays>,
         first: usize,
         budget: u32,
-    ) -> Option<Self::Packet<'p>> {
-        if bundle.suits::<K>() {
-            let room = std::mem::take(&mut self.vectors);
-            Some(Packet::new(self.packed, bundle, first, budget, room))
-        } else {
-            None
-        }
+    ) -> Self::Packet<'p> {
+        let room = std::mem::take(&mut self.vectors);
+        Packet::new(self.packed, bundle, first, budget, room)
     }
 
     #[inline(always)]

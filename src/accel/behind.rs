@@ -67,10 +67,21 @@ pub(super) fn lead<S: Structure + ?Sized, V: Visitor>(
     visitor: &mut V,
 ) {
     if V::ORDERED {
-        structure.traverse::<Portable, _>(ray, scratch, &mut Behind::<true>::new(visitor));
+        lead_apart(structure, ray, scratch, Behind::<true>::new(visitor));
     } else {
-        structure.traverse::<Portable, _>(ray, scratch, &mut Behind::<false>::new(visitor));
+        lead_apart(structure, ray, scratch, Behind::<false>::new(visitor));
     }
+}
+
+/// Compiled once a structure and order: within [`lead`] it would be once a kernel and query again.
+#[inline(never)]
+fn lead_apart<S: Structure + ?Sized, const ORDERED: bool>(
+    structure: &S,
+    ray: &Ray,
+    scratch: &mut S::Scratch,
+    mut visitor: Behind<'_, ORDERED>,
+) {
+    structure.traverse::<Portable, _>(ray, scratch, &mut visitor);
 }
 
 impl<const ORDERED: bool> Visitor for Behind<'_, ORDERED> {

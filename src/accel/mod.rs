@@ -107,7 +107,7 @@ pub trait Structure: Send + Sync + 'static {
     #[inline(always)]
     fn lead<I: Isa, V: Visitor>(&self, ray: &Ray, scratch: &mut Self::Scratch, visitor: &mut V) {
         // Unit tests take the other way, and are compiled sooner; tests/matrix takes this one.
-        if Self::DIRECT && (I::SIXTEEN || !Self::Items::LANES) && !cfg!(test) {
+        if Self::DIRECT && V::DIRECT && (I::SIXTEEN || !Self::Items::LANES) && !cfg!(test) {
             self.traverse::<I, _>(ray, scratch, visitor);
         } else {
             behind::lead(self, ray, scratch, visitor);

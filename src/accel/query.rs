@@ -181,6 +181,7 @@ impl<T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool> Visitor
 {
     const WATCHED: bool = C::COUNTS;
     const ORDERED: bool = !OCCLUSION;
+    const DIRECT: bool = K::DIRECT;
 
     #[inline(always)]
     fn step(&mut self, place: u64, leaf: bool, references: u32, entry: f64, exit: f64) {

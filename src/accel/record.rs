@@ -129,10 +129,6 @@ impl Recorder {
 }
 
 impl Watch for Recorder {
-    fn begin(&mut self) {
-        self.visits.clear();
-    }
-
     fn step(&mut self, place: u64, leaf: bool, references: u32, entry: f64, exit: f64) {
         self.visits.push(Visit {
             kind: if leaf { self.leaf } else { PlaceKind::Node },

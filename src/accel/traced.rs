@@ -110,7 +110,6 @@ impl<S: Structure, K: Kernel> Traced<S, K> {
         scratch: &mut S::Scratch,
         watch: &mut dyn Watch,
     ) -> Hit {
-        watch.begin();
         let mut query: Query<S::Items, K, Portable, &mut dyn Watch, OCCLUSION> =
             Query::new(&self.packed, ray, watch);
         behind::lead(&self.structure, ray, scratch, &mut query);
@@ -124,14 +123,54 @@ impl<S: Structure, K: Kernel> Traced<S, K> {
         answers: &mut [A],
         counts: &mut [Counts],
     ) {
-        let mut scratch = self.structure.scratch();
-        let mut counter = Counted::new(self.packed.mesh.len());
-        for ((ray, answer), count) in rays.iter().zip(answers).zip(counts) {
-            let hit = self.watched::<OCCLUSION>(ray, &mut scratch, &mut counter);
-            *answer = A::of(hit);
-            *count = counter.counts;
-        }
+        let counter = Counted::new(self.packed.mesh.len());
+        let mut watched = |ray: &Ray, scratch: &mut S::Scratch, watch: &mut dyn Watch| {
+            self.watched::<OCCLUSION>(ray, scratch, watch)
+        };
+        count(
+            &self.structure,
+            (rays, answers, counts),
+            counter,
+            &mut watched,
+        );
     }
+}
+
+/// Traces a ray, watched.
+type Watched<'a, S> = dyn FnMut(&Ray, &mut <S as Structure>::Scratch, &mut dyn Watch) -> Hit + 'a;
+
+/// See [`Traced::counted`]. As the next two, compiled once a structure, whatever the kernel.
+#[inline(never)]
+fn count<S: Structure, A: Answer>(
+    structure: &S,
+    (rays, answers, counts): (&[Ray], &mut [A], &mut [Counts]),
+    mut counter: Counted,
+    watched: &mut Watched<S>,
+) {
+    let mut scratch = structure.scratch();
+    for ((ray, answer), count) in rays.iter().zip(answers).zip(counts) {
+        counter.begin();
+        *answer = A::of(watched(ray, &mut scratch, &mut counter));
+        *count = counter.counts;
+    }
+}
+
+/// See [`Accelerator::inspect`].
+#[inline(never)]
+fn record<S: Structure>(structure: &S, ray: &Ray, watched: &mut Watched<S>) -> Recording {
+    let mut recorder = Recorder::new(S::LEAF);
+    let hit = watched(ray, &mut structure.scratch(), &mut recorder);
+    let mut visits = recorder.visits;
+    for visit in &mut visits {
+        visit.bounds = structure.place_bounds(visit.place);
+    }
+    Recording { visits, hit }
+}
+
+/// See [`Accelerator::stats`].
+#[inline(never)]
+fn stats_of<S: Structure>(structure: &S) -> StructureStats {
+    structure.stats()
 }
 
 impl<S: Structure, K: Kernel> Accelerator for Traced<S, K> {
@@ -152,13 +191,10 @@ impl<S: Structure, K: Kernel> Accelerator for Traced<S, K> {
     }
 
     fn inspect(&self, ray: &Ray) -> Recording {
-        let mut recorder = Recorder::new(S::LEAF);
-        let hit = self.watched::<false>(ray, &mut self.structure.scratch(), &mut recorder);
-        let mut visits = recorder.visits;
-        for visit in &mut visits {
-            visit.bounds = self.structure.place_bounds(visit.place);
-        }
-        Recording { visits, hit }
+        let mut watched = |ray: &Ray, scratch: &mut S::Scratch, watch: &mut dyn Watch| {
+            self.watched::<false>(ray, scratch, watch)
+        };
+        record(&self.structure, ray, &mut watched)
     }
 
     fn instruction_set(&self) -> InstructionSet {
@@ -166,7 +202,7 @@ impl<S: Structure, K: Kernel> Accelerator for Traced<S, K> {
     }
 
     fn stats(&self) -> StructureStats {
-        self.structure.stats()
+        stats_of(&self.structure)
     }
 
     fn memory_bytes(&self) -> u64 {

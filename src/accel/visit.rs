@@ -9,6 +9,9 @@ pub trait Visitor {
     /// Whether near places should come before far ones: not where any hit will do, and ordering costs more than it saves.
     const ORDERED: bool = true;
 
+    /// Whether traversals are compiled for it, as [`super::Structure::DIRECT`] says.
+    const DIRECT: bool = true;
+
     /// A cell or node was entered; `entry` and `exit` are the ray's `t` there, `references` is how many triangles it
     /// lists (0 for an interior node) and `leaf` whether it can list any.
     fn step(&mut self, place: u64, leaf: bool, references: u32, entry: f64, exit: f64);
@@ -76,8 +79,6 @@ impl Counter for Uncounted {
 /// What is done with the work of rays, one after another. Called through a pointer, so that each combination of structure
 /// and kernel is compiled once for all that watch.
 pub(super) trait Watch {
-    /// The next ray begins.
-    fn begin(&mut self);
     /// See [`Visitor::step`].
     fn step(&mut self, place: u64, leaf: bool, references: u32, entry: f64, exit: f64);
     /// See [`Counter::test`].
@@ -116,15 +117,16 @@ impl Counted {
             tested_by: vec![0; triangles],
         }
     }
-}
 
-impl Watch for Counted {
-    fn begin(&mut self) {
+    /// The next ray begins.
+    pub fn begin(&mut self) {
         // A batch holds fewer than 2³² rays, so a number never returns.
         self.ray += 1;
         self.counts = Counts::default();
     }
+}
 
+impl Watch for Counted {
     fn step(&mut self, _: u64, leaf: bool, references: u32, _: f64, _: f64) {
         self.counts.steps += 1;
         self.counts.empty_steps += u64::from(leaf && references == 0);

@@ -88,6 +88,9 @@ pub trait Kernel: Debug + Clone + Send + Sync + 'static {
     /// one that is chosen for its speed. All ways of all kernels would take the compiler twice as long.
     const PACKETS: bool = false;
 
+    /// Whether the traversals of structures are compiled for it: a control need not be fast.
+    const DIRECT: bool = true;
+
     /// Whether to prepare a ray again costs no more than to keep what was prepared.
     const CHEAPLY_PREPARED: bool = false;
 
@@ -98,19 +101,12 @@ pub trait Kernel: Debug + Clone + Send + Sync + 'static {
         [LaneVec3::splat(Vec3::ZERO); 3]
     }
 
-    /// Prepares valid rays, one a lane: the same in each, or those of a packet. `lead` is one of them; the others agree
-    /// with it by [`Kernel::same_frame`].
+    /// Prepares valid rays, one a lane: the same in each, or several that are tested together, of which `lead` is one.
     fn prepare<const W: usize, L: Lane<W>>(
         &self,
         lead: &Ray,
         rays: &LaneRay<L>,
     ) -> Self::Prepared<W, L>;
-
-    /// Whether rays with these directions may be prepared together with `lead`.
-    #[inline(always)]
-    fn same_frame<L: Lane<1>>(_lead: &Ray, _dirs: &LaneVec3<L>) -> bool {
-        true
-    }
 
     /// Tests the whole lines of the rays against the triangles, lane by lane; `None` only if no lane is hit.
     ///

@@ -133,6 +133,7 @@ impl<const EPS: bool> Kernel for MollerTrumbore<EPS> {
 
     // A control need not be fast, and is compiled sooner.
     const PACKETS: bool = !EPS;
+    const DIRECT: bool = !EPS;
     const CHEAPLY_PREPARED: bool = true;
 
     #[inline(always)]

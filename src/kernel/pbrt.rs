@@ -68,7 +68,7 @@ fn error_of_t<const W: usize, L: Lane<W>>(sheared: &Sheared<L, L::Mask>) -> L {
 
 impl Kernel for Pbrt {
     type Packed<const W: usize> = Corners<W>;
-    type Prepared<const W: usize, L: Lane<W>> = Prepared<L>;
+    type Prepared<const W: usize, L: Lane<W>> = Prepared<L, L::Mask>;
 
     fn pack<const W: usize>(&self, corners: impl Fn(usize) -> [Vec3; 3]) -> Corners<W> {
         Corners::with_area_or_nan(corners)
@@ -80,19 +80,18 @@ impl Kernel for Pbrt {
     }
 
     #[inline(always)]
-    fn prepare<const W: usize, L: Lane<W>>(&self, lead: &Ray, rays: &LaneRay<L>) -> Prepared<L> {
+    fn prepare<const W: usize, L: Lane<W>>(
+        &self,
+        lead: &Ray,
+        rays: &LaneRay<L>,
+    ) -> Prepared<L, L::Mask> {
         shear::prepare(lead, rays)
-    }
-
-    #[inline(always)]
-    fn same_frame<L: Lane<1>>(lead: &Ray, dirs: &LaneVec3<L>) -> bool {
-        shear::same_frame(lead, dirs)
     }
 
     #[inline(always)]
     fn intersect<const W: usize, L: Lane<W>>(
         &self,
-        ray: &Prepared<L>,
+        ray: &Prepared<L, L::Mask>,
         tri: &Corners<W>,
     ) -> Option<LaneHit<W, L>> {
         let sheared = shear::test::<W, L, Self>(ray, tri)?;
@@ -107,7 +106,11 @@ impl Kernel for Pbrt {
     }
 
     #[inline(always)]
-    fn t_error_bound<const W: usize, L: Lane<W>>(ray: &Prepared<L>, tri: &Corners<W>, t: L) -> L {
+    fn t_error_bound<const W: usize, L: Lane<W>>(
+        ray: &Prepared<L, L::Mask>,
+        tri: &Corners<W>,
+        t: L,
+    ) -> L {
         shear::t_error_bound::<W, L, Self>(ray, tri, t)
     }
 

@@ -21,10 +21,12 @@ use crate::geometry::{DVec3, Ray, Vec3};
 use super::error::{self, HUGE, TINY, gamma};
 use super::{Corners, LaneHit};
 
-/// The axes in the order x, y, z of the sheared frame, and the shear.
+/// The axes in the order x, y, z of the sheared frame, and the shear; `M` are truth values, one a lane.
 #[derive(Debug, Clone, Copy)]
-pub struct Prepared<L> {
+pub struct Prepared<L, M> {
     axes: [usize; 3],
+    /// Where not all rays have those axes: whose z is x, and whose is y.
+    turned: Option<[M; 2]>,
     pub(super) origin: LaneVec3<L>,
     shear: LaneVec3<L>,
 }
@@ -54,17 +56,34 @@ pub(super) fn frame(dir: Vec3) -> [usize; 3] {
     [(z + 1) % 3, (z + 2) % 3, z]
 }
 
-/// Whether rays with these directions have the frame of `lead`.
+/// Whose frame's z is x, and whose is y, unless [`frame`] says the same of all.
 #[inline(always)]
-pub(super) fn same_frame<L: Lane<1>>(lead: &Ray, dirs: &LaneVec3<L>) -> bool {
-    let (x, y, z) = (dirs.x.abs(), dirs.y.abs(), dirs.z.abs());
-    // The last of equals is the largest.
-    let differs = match frame(lead.dir)[2] {
-        0 => x.le(y) | x.le(z),
-        1 => y.lt(x) | y.le(z),
-        _ => z.lt(x) | z.lt(y),
+fn turns<const W: usize, L: Lane<W>>(z: usize, dirs: &LaneVec3<L>) -> Option<[L::Mask; 2]> {
+    // Lanes of triangles all have the same ray.
+    if L::N == W {
+        return None;
+    }
+    let (x, y, z_size) = (dirs.x.abs(), dirs.y.abs(), dirs.z.abs());
+    let from_z = z_size.ge(x) & z_size.ge(y);
+    let along = [!from_z & x.gt(y), !from_z & y.ge(x)];
+    let alike = match z {
+        0 | 1 => !(!along[z]).any(),
+        _ => !(!from_z).any(),
     };
-    !differs.any()
+    (!alike).then_some(along)
+}
+
+/// A vector in the frames of rays that differ.
+#[inline(always)]
+fn turned<const W: usize, L: Lane<W>>([by_x, by_y]: [L::Mask; 2], v: LaneVec3<L>) -> LaneVec3<L> {
+    let pick = |along_x: L, along_y: L, along_z: L| {
+        L::select(by_x, along_x, L::select(by_y, along_y, along_z))
+    };
+    LaneVec3 {
+        x: pick(v.y, v.z, v.x),
+        y: pick(v.z, v.x, v.y),
+        z: pick(v.x, v.y, v.z),
+    }
 }
 
 /// The lanes of `zero` again in `f64`, where both products are exact.
@@ -82,12 +101,20 @@ fn edge_exact<const W: usize, L: Lane<W>>(zero: u32, rounded: L, a: L, b: L, c: 
 
 /// The rays as the test reads them.
 #[inline(always)]
-pub(super) fn prepare<const W: usize, L: Lane<W>>(lead: &Ray, rays: &LaneRay<L>) -> Prepared<L> {
+pub(super) fn prepare<const W: usize, L: Lane<W>>(
+    lead: &Ray,
+    rays: &LaneRay<L>,
+) -> Prepared<L, L::Mask> {
     let axes = frame(lead.dir);
-    let dir = rays.dir.permuted(axes);
+    let turns = turns(axes[2], &rays.dir);
+    let (origin, dir) = match turns {
+        None => (rays.origin.permuted(axes), rays.dir.permuted(axes)),
+        Some(turns) => (turned(turns, rays.origin), turned(turns, rays.dir)),
+    };
     Prepared {
         axes,
-        origin: rays.origin.permuted(axes),
+        turned: turns,
+        origin,
         shear: LaneVec3 {
             x: dir.x / dir.z,
             y: dir.y / dir.z,
@@ -99,7 +126,7 @@ pub(super) fn prepare<const W: usize, L: Lane<W>>(lead: &Ray, rays: &LaneRay<L>)
 /// The corners relative to the ray's origin, in the frame in which the ray runs along z.
 #[inline(always)]
 pub(super) fn sheared<const W: usize, L: Lane<W>>(
-    ray: &Prepared<L>,
+    ray: &Prepared<L, L::Mask>,
     tri: &Corners<W>,
 ) -> [LaneVec3<L>; 3] {
     let [a, b, c] = &tri.0;
@@ -108,12 +135,22 @@ pub(super) fn sheared<const W: usize, L: Lane<W>>(
 
 /// One of the three.
 #[inline(always)]
-fn corner<const W: usize, L: Lane<W>>(ray: &Prepared<L>, rows: &[[f32; W]; 3]) -> LaneVec3<L> {
-    let [kx, ky, kz] = ray.axes;
-    let z = L::load(&rows[kz]) - ray.origin.z;
+fn corner<const W: usize, L: Lane<W>>(
+    ray: &Prepared<L, L::Mask>,
+    rows: &[[f32; W]; 3],
+) -> LaneVec3<L> {
+    let corner = match ray.turned {
+        None => LaneVec3 {
+            x: L::load(&rows[ray.axes[0]]),
+            y: L::load(&rows[ray.axes[1]]),
+            z: L::load(&rows[ray.axes[2]]),
+        },
+        Some(turns) => turned(turns, LaneVec3::load(rows)),
+    };
+    let z = corner.z - ray.origin.z;
     LaneVec3 {
-        x: L::load(&rows[kx]) - ray.origin.x - ray.shear.x * z,
-        y: L::load(&rows[ky]) - ray.origin.y - ray.shear.y * z,
+        x: corner.x - ray.origin.x - ray.shear.x * z,
+        y: corner.y - ray.origin.y - ray.shear.y * z,
         z,
     }
 }
@@ -128,7 +165,7 @@ fn apart<const W: usize, L: Lane<W>>(u: L, v: L, w: L) -> L::Mask {
 /// As [`meet`]; `None` if none is hit.
 #[inline(always)]
 pub(super) fn test<const W: usize, L: Lane<W>, E: Edge>(
-    ray: &Prepared<L>,
+    ray: &Prepared<L, L::Mask>,
     tri: &Corners<W>,
 ) -> Option<Sheared<L, L::Mask>> {
     let sheared = meet::<W, L, E>(ray, tri);
@@ -138,7 +175,7 @@ pub(super) fn test<const W: usize, L: Lane<W>, E: Edge>(
 /// Shears the triangles and tests which are hit, with the kernel's edge functions.
 #[inline(always)]
 pub(super) fn meet<const W: usize, L: Lane<W>, E: Edge>(
-    ray: &Prepared<L>,
+    ray: &Prepared<L, L::Mask>,
     tri: &Corners<W>,
 ) -> Sheared<L, L::Mask> {
     let zero = L::splat(0.0);
@@ -202,7 +239,7 @@ fn largest<const W: usize, L: Lane<W>>([x, y, z]: [L; 3]) -> L {
 /// The bound of [`t_error`] from what was rounded, so a little larger, for hits of each lane.
 #[inline(always)]
 pub(super) fn t_error_bound<const W: usize, L: Lane<W>, E: Edge>(
-    ray: &Prepared<L>,
+    ray: &Prepared<L, L::Mask>,
     tri: &Corners<W>,
     t: L,
 ) -> L {

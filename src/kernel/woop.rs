@@ -62,7 +62,7 @@ impl<const FUSED: bool> Edge for Woop<FUSED> {
 
 impl<const FUSED: bool> Kernel for Woop<FUSED> {
     type Packed<const W: usize> = Corners<W>;
-    type Prepared<const W: usize, L: Lane<W>> = Prepared<L>;
+    type Prepared<const W: usize, L: Lane<W>> = Prepared<L, L::Mask>;
 
     #[inline(always)]
     fn pack<const W: usize>(&self, corners: impl Fn(usize) -> [Vec3; 3]) -> Corners<W> {
@@ -76,6 +76,7 @@ impl<const FUSED: bool> Kernel for Woop<FUSED> {
 
     // A control need not be fast, and is compiled sooner.
     const PACKETS: bool = !FUSED;
+    const DIRECT: bool = !FUSED;
 
     #[inline(always)]
     fn corners<L: Lane<8>>(block: &Corners<8>) -> [LaneVec3<L>; 3] {
@@ -83,19 +84,18 @@ impl<const FUSED: bool> Kernel for Woop<FUSED> {
     }
 
     #[inline(always)]
-    fn prepare<const W: usize, L: Lane<W>>(&self, lead: &Ray, rays: &LaneRay<L>) -> Prepared<L> {
+    fn prepare<const W: usize, L: Lane<W>>(
+        &self,
+        lead: &Ray,
+        rays: &LaneRay<L>,
+    ) -> Prepared<L, L::Mask> {
         shear::prepare(lead, rays)
-    }
-
-    #[inline(always)]
-    fn same_frame<L: Lane<1>>(lead: &Ray, dirs: &LaneVec3<L>) -> bool {
-        shear::same_frame(lead, dirs)
     }
 
     #[inline(always)]
     fn intersect<const W: usize, L: Lane<W>>(
         &self,
-        ray: &Prepared<L>,
+        ray: &Prepared<L, L::Mask>,
         tri: &Corners<W>,
     ) -> Option<LaneHit<W, L>> {
         Some(shear::test::<W, L, Self>(ray, tri)?.hit())
@@ -104,7 +104,7 @@ impl<const FUSED: bool> Kernel for Woop<FUSED> {
     #[inline(always)]
     fn hit_within<L: Lane<1>>(
         &self,
-        rays: &Prepared<L>,
+        rays: &Prepared<L, L::Mask>,
         tri: &Corners<1>,
         [t_min, t_max]: [L; 2],
     ) -> u32 {
@@ -113,7 +113,11 @@ impl<const FUSED: bool> Kernel for Woop<FUSED> {
     }
 
     #[inline(always)]
-    fn t_error_bound<const W: usize, L: Lane<W>>(ray: &Prepared<L>, tri: &Corners<W>, t: L) -> L {
+    fn t_error_bound<const W: usize, L: Lane<W>>(
+        ray: &Prepared<L, L::Mask>,
+        tri: &Corners<W>,
+        t: L,
+    ) -> L {
         shear::t_error_bound::<W, L, Self>(ray, tri, t)
     }
 

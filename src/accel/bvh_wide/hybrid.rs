@@ -271,7 +271,7 @@ fn together<'a, R: Rays<'a>>(
             group.apart::<R::Isa>(next, active, stack);
         } else if next.is_leaf() {
             for block in next.blocks() {
-                test::<R>(batch, block, active, sixteen.as_ref(), &mut group, stack);
+                test::<R>(batch, block, active, &sixteen, &mut group, stack);
             }
         } else {
             waiting.push::<R>(next, level, active, &group, &lines);
@@ -290,7 +290,7 @@ fn test<'a, R: Rays<'a>>(
     batch: &R,
     block: u32,
     active: u32,
-    sixteen: Option<&R::Sixteen>,
+    sixteen: &R::Sixteen,
     group: &mut Group<'_, 'a, <R::Isa as Isa>::Rays, R::Visitor>,
     stack: &mut Stack,
 ) {
@@ -302,9 +302,7 @@ fn test<'a, R: Rays<'a>>(
     if met == 0 {
         return;
     }
-    if let Some(sixteen) = sixteen
-        && met.count_ones() <= open.count_ones()
-    {
+    if met.count_ones() <= open.count_ones() {
         let taken = batch.test_sixteen(sixteen, open, block, met, group.visitors);
         group.update(taken);
     } else {

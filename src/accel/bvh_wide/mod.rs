@@ -204,10 +204,12 @@ impl Structure for BvhWide {
         match self.way.unwrap_or_else(|| way::choose(self, batch.rays())) {
             Way::Single => packets::trace(self, batch, stacks, false),
             Way::Packets => packets::trace(self, batch, stacks, true),
-            Way::Hybrid => {
+            Way::Hybrid if R::GROUPS => {
                 run_apart::<Hybrid, _, _>(self, batch, all, stacks);
             }
-            Way::Interleaved => run_apart::<Interleaved, _, _>(self, batch, all, stacks),
+            Way::Hybrid | Way::Interleaved => {
+                run_apart::<Interleaved, _, _>(self, batch, all, stacks);
+            }
             Way::Mixed => way::mixed(self, batch, all, stacks),
         }
     }

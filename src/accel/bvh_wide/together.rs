@@ -31,9 +31,7 @@ impl Together for BvhWide {
         let bundle = Bundle::new::<R::Isa>(rays);
         let slabs = PacketSlabs::<<R::Isa as Isa>::X8>::new(&bundle, &self.scene.bounds)
             .ok_or(Refused::Unlike)?;
-        let mut packet = batch
-            .begin_packet(&bundle, first, budget)
-            .ok_or(Refused::Unlike)?;
+        let mut packet = batch.begin_packet(&bundle, first, budget);
         let mut walk = Walk::<R::Isa, _>::along(slabs, self, 0.0);
         while walk.step(self, stack, &mut packet) {}
         batch.finish_packet(packet).ok_or(Refused::TooDear)

@@ -32,7 +32,7 @@ impl Way {
     /// The parameter that asks for a way: for tests and for measuring what the choice is worth.
     pub const PARAM: ParamSpec = ParamSpec {
         name: "way",
-        about: "How a batch of rays is traced; `auto` looks at the rays and the tree. Kernels that make no packets have but one way: `single`.",
+        about: "How a batch of rays is traced; `auto` looks at the rays and the tree. Kernels that make no packets have but one way, `single`; `exact` makes no groups of rays that any hit will do: these are `interleaved` where others are `hybrid` or `mixed`.",
         kind: ParamKind::Choice(&[
             "auto",
             "single",
@@ -97,6 +97,9 @@ pub(super) fn mixed<'a, R: Rays<'a>>(
     range: Range<usize>,
     stacks: &mut Stacks,
 ) {
+    if !R::GROUPS {
+        return run_apart::<Interleaved, _, _>(tree, batch, range, stacks);
+    }
     let (mut start, end) = (range.start, range.end);
     let (mut together, mut apart) = (TOGETHER.start, APART.start);
     while start < end {

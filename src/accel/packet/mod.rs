@@ -176,16 +176,6 @@ impl<'a, L: Lane<1>> Bundle<'a, L> {
     fn vectors(&self) -> usize {
         self.rays.len().div_ceil(VECTOR)
     }
-
-    /// Whether a kernel can test them together.
-    #[inline(always)]
-    pub fn suits<K: Kernel>(&self) -> bool {
-        let mut suits = K::PACKETS;
-        for beams in &self.lanes[..self.vectors()] {
-            suits &= K::same_frame(&self.rays[0], &beams.dirs);
-        }
-        suits
-    }
 }
 
 /// `choose` of each component.

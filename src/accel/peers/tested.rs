@@ -7,6 +7,7 @@
 //! ```
 
 use std::ops::ControlFlow;
+use std::slice::from_ref;
 use std::sync::Arc;
 
 use crate::accel::{Accelerator, BuildError, BuildRequest, Counts, Recording, StructureStats};
@@ -124,9 +125,11 @@ impl<T: Tree, K: Kernel> Accelerator for Tested<T, K> {
     }
 
     fn inspect(&self, ray: &Ray) -> Recording {
+        let mut hit = [Hit::MISS];
+        self.closest(from_ref(ray), &mut hit);
         Recording {
             visits: Vec::new(),
-            hit: self.trace::<false>(ray),
+            hit: hit[0],
         }
     }
 
@@ -140,17 +143,22 @@ impl<T: Tree, K: Kernel> Accelerator for Tested<T, K> {
     }
 
     fn validate(&self) -> Result<(), String> {
-        let mut referenced = vec![false; self.mesh.len()];
-        for &prim in &self.prims {
-            if let Some(seen) = referenced.get_mut(prim as usize) {
-                *seen = true;
-            } else {
-                return Err(format!("triangle {prim} is not in the mesh"));
-            }
+        all_referenced(&self.prims, self.mesh.len())
+    }
+}
+
+/// Checks that `prims` are triangles of a mesh of so many, and that none is left out.
+fn all_referenced(prims: &[u32], triangles: usize) -> Result<(), String> {
+    let mut referenced = vec![false; triangles];
+    for &prim in prims {
+        if let Some(seen) = referenced.get_mut(prim as usize) {
+            *seen = true;
+        } else {
+            return Err(format!("triangle {prim} is not in the mesh"));
         }
-        match referenced.iter().position(|seen| !seen) {
-            Some(prim) => Err(format!("triangle {prim} is in no leaf")),
-            None => Ok(()),
-        }
+    }
+    match referenced.iter().position(|seen| !seen) {
+        Some(prim) => Err(format!("triangle {prim} is in no leaf")),
+        None => Ok(()),
     }
 }

@@ -42,9 +42,7 @@ impl Together for PlaneTree {
         let bundle = Bundle::new::<R::Isa>(&batch.rays()[range]);
         let pencil = Pencil::new(&bundle, &self.bounds).ok_or(Refused::Unlike)?;
         let budget = TOO_DEAR * bundle.rays.len() as u32;
-        let mut packet = batch
-            .begin_packet(&bundle, first, budget)
-            .ok_or(Refused::Unlike)?;
+        let mut packet = batch.begin_packet(&bundle, first, budget);
         let mut walk = begin(self, pencil, room, packet.t_limit());
         while let Some(blocks) = next(&mut walk, self, packet.t_limit()) {
             for block in blocks {

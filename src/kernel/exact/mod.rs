@@ -83,7 +83,7 @@ pub enum Stage {
 /// What [`Exact`] needs to decide on a valid ray and a triangle: for rates, counted apart from the tests themselves.
 #[must_use]
 pub fn stage(ray: &Ray, corners: &[Vec3; 3]) -> Stage {
-    let prepared: Prepared<f32> = Exact.prepare(ray, &LaneRay::splat(ray));
+    let prepared: Prepared<f32, bool> = Exact.prepare(ray, &LaneRay::splat(ray));
     let filtered = filter(&prepared, &Exact.pack::<1>(|_| *corners));
     if filtered.miss | filtered.hit {
         Stage::F32
@@ -105,9 +105,9 @@ pub struct Packed<const W: usize> {
 
 /// The frame of the filter, and the rays themselves.
 #[derive(Debug, Clone, Copy)]
-pub struct Prepared<L> {
+pub struct Prepared<L, M> {
     /// Its origin's z is NaN beyond [`RANGE`].
-    frame: shear::Prepared<L>,
+    frame: shear::Prepared<L, M>,
     rays: LaneRay<L>,
 }
 
@@ -151,7 +151,10 @@ struct Filtered<L, M> {
 
 /// Decides what can be decided in `f32`.
 #[inline(always)]
-fn filter<const W: usize, L: Lane<W>>(ray: &Prepared<L>, tri: &Packed<W>) -> Filtered<L, L::Mask> {
+fn filter<const W: usize, L: Lane<W>>(
+    ray: &Prepared<L, L::Mask>,
+    tri: &Packed<W>,
+) -> Filtered<L, L::Mask> {
     let [a, b, c] = shear::sheared(&ray.frame, &tri.corners);
     let u = Woop::<false>::edge(c.x, b.y, c.y, b.x);
     let v = Woop::<false>::edge(a.x, c.y, a.y, c.x);
@@ -193,7 +196,7 @@ impl<const W: usize> Packed<W> {
 #[cold]
 #[inline(never)]
 fn settled<const W: usize, L: Lane<W>>(
-    ray: &Prepared<L>,
+    ray: &Prepared<L, L::Mask>,
     tri: &Packed<W>,
     filtered: &Filtered<L, L::Mask>,
     sure: u32,
@@ -233,7 +236,7 @@ fn settled<const W: usize, L: Lane<W>>(
 
 impl Kernel for Exact {
     type Packed<const W: usize> = Packed<W>;
-    type Prepared<const W: usize, L: Lane<W>> = Prepared<L>;
+    type Prepared<const W: usize, L: Lane<W>> = Prepared<L, L::Mask>;
 
     const EXACT_T: bool = true;
 
@@ -260,7 +263,11 @@ impl Kernel for Exact {
     }
 
     #[inline(always)]
-    fn prepare<const W: usize, L: Lane<W>>(&self, lead: &Ray, rays: &LaneRay<L>) -> Prepared<L> {
+    fn prepare<const W: usize, L: Lane<W>>(
+        &self,
+        lead: &Ray,
+        rays: &LaneRay<L>,
+    ) -> Prepared<L, L::Mask> {
         let mut frame = shear::prepare(lead, rays);
         let origin = rays.origin;
         let far = origin.x.abs().max(origin.y.abs()).max(origin.z.abs());
@@ -269,14 +276,9 @@ impl Kernel for Exact {
     }
 
     #[inline(always)]
-    fn same_frame<L: Lane<1>>(lead: &Ray, dirs: &LaneVec3<L>) -> bool {
-        shear::same_frame(lead, dirs)
-    }
-
-    #[inline(always)]
     fn intersect<const W: usize, L: Lane<W>>(
         &self,
-        ray: &Prepared<L>,
+        ray: &Prepared<L, L::Mask>,
         tri: &Packed<W>,
     ) -> Option<LaneHit<W, L>> {
         let filtered = filter(ray, tri);
@@ -305,7 +307,11 @@ impl Kernel for Exact {
     }
 
     #[inline(always)]
-    fn t_error_bound<const W: usize, L: Lane<W>>(_: &Prepared<L>, _: &Packed<W>, t: L) -> L {
+    fn t_error_bound<const W: usize, L: Lane<W>>(
+        _: &Prepared<L, L::Mask>,
+        _: &Packed<W>,
+        t: L,
+    ) -> L {
         t.abs() * L::splat(3.0 * f32::EPSILON) + L::splat(8.0 * f32::from_bits(1))
     }
 

@@ -1,6 +1,8 @@
 //! Batches: a ray set is cut into slices of at most [`BATCH`] rays, which the threads of the current rayon pool take in turn.
 //!
-//! Answers land at their ray's index, so they do not depend on the number of threads.
+//! Answers land at their ray's index, so they do not depend on the number of threads. Each batch can be taken by any thread:
+//! left to itself rayon cuts a set in four for two threads, and the one whose rays are cheap, where a picture is empty, waits
+//! for the other (primary rays of the Crytek Sponza: two threads gave 1.2 times one).
 
 use rayon::prelude::*;
 
@@ -68,6 +70,7 @@ fn each<T: Send>(rays: &[Ray], answers: &mut [T], trace: impl Fn(&[Ray], &mut [T
         let batch = batch(rays.len(), rayon::current_num_threads());
         rays.par_chunks(batch)
             .zip(answers.par_chunks_mut(batch))
+            .with_max_len(1)
             .for_each(|(rays, answers)| trace(rays, answers));
     }
 }
@@ -90,6 +93,7 @@ fn counted<T: Send>(
     rays.par_chunks(batch)
         .zip(answers.par_chunks_mut(batch))
         .zip(counts.par_chunks_mut(batch))
+        .with_max_len(1)
         .for_each(|((rays, answers), counts)| trace(rays, answers, counts));
     counts
 }

@@ -67,7 +67,7 @@ pub trait Rays<'a> {
     const WAYS: bool;
 
     /// Whether one triangle is tested against sixteen rays. Where any hit will do, a kernel that compares hits more exactly than
-    /// their `t` tells is faster ray by ray: it had better not begin with a hit near an end of the interval.
+    /// their `t` tells goes ray by ray: on four of seven meshes that is faster, up to twice, on three slower, by up to a quarter.
     const GROUPS: bool;
 
     /// Sixteen rays as the kernel reads them.

@@ -16,6 +16,7 @@
 use rayon::prelude::*;
 
 use super::super::pages;
+use super::bricks::Bricks;
 use super::cells::Cells;
 
 /// Directions: bit a is set where a ray goes down axis a.
@@ -25,18 +26,18 @@ pub(super) const OCTANTS: usize = 8;
 const FAR: u8 = u8::MAX;
 
 /// The distances of all cells, direction after direction. 0: the cell lists triangles.
-pub(super) fn distances(cells: &Cells, dims: [u32; 3]) -> Vec<u8> {
-    let count = dims.iter().map(|&n| n as usize).product::<usize>();
+pub(super) fn distances(cells: &Cells, bricks: &Bricks, dims: [u32; 3]) -> Vec<u8> {
+    let count = bricks.len();
     let mut all = pages::with_capacity(OCTANTS * count);
     all.resize(OCTANTS * count, 0);
     all.par_chunks_mut(count.max(1))
         .enumerate()
-        .for_each(|(octant, distances)| fill(octant, distances, cells, dims));
+        .for_each(|(octant, distances)| fill(octant, distances, cells, (bricks, dims)));
     all
 }
 
 /// Fills in the distances of one direction, from the far end of the grid to the near one.
-fn fill(octant: usize, distances: &mut [u8], cells: &Cells, dims: [u32; 3]) {
+fn fill(octant: usize, distances: &mut [u8], cells: &Cells, (bricks, dims): (&Bricks, [u32; 3])) {
     let [nx, ny, nz] = dims.map(|n| n as usize);
     let down = |axis: usize| octant >> axis & 1 == 1;
     // Rows run with the ray: place c is cell c, or cell nx - 1 - c. Behind the last row and column lies the outside.
@@ -59,14 +60,21 @@ fn fill(octant: usize, distances: &mut [u8], cells: &Cells, dims: [u32; 3]) {
                 &outside
             };
             nearest(row, in_plane, &behind[k * nx..(k + 1) * nx], across);
-            let first = (z * ny + y) * nx;
-            let place = |x: usize| if down(0) { nx - 1 - x } else { x };
-            cells.each_listed(first..first + nx, |cell| row[place(cell - first)] = 0);
+            for (x, place, count) in bricks.row(y as u32, z as u32) {
+                cells.each_listed(place..place + count, |cell| {
+                    let x = x + cell - place;
+                    row[if down(0) { nx - 1 - x } else { x }] = 0;
+                });
+            }
             run(row);
-            let target = &mut distances[first..first + nx];
-            target.copy_from_slice(row);
-            if down(0) {
-                target.reverse();
+            for (x, place, count) in bricks.row(y as u32, z as u32) {
+                let target = &mut distances[place..place + count];
+                if down(0) {
+                    target.copy_from_slice(&row[nx - x - count..nx - x]);
+                    target.reverse();
+                } else {
+                    target.copy_from_slice(&row[x..x + count]);
+                }
             }
         }
         std::mem::swap(&mut behind, &mut ahead);
@@ -131,13 +139,15 @@ mod tests {
             for rarity in [1, 2, 20, 200, 100_000] {
                 let count = dims.iter().product::<u32>();
                 let listed: Vec<bool> = (0..count).map(|_| dice.below(rarity) == 0).collect();
-                let cells = Cells::new(listed.len(), |cell| listed[cell]);
-                let all = distances(&cells, dims);
+                let bricks = Bricks::new(dims);
+                let number = |[x, y, z]: [u32; 3]| ((z * dims[1] + y) * dims[0] + x) as usize;
+                let lists = |place| bricks.cell(place).is_some_and(|cell| listed[number(cell)]);
+                let all = distances(&Cells::new(bricks.len(), lists), &bricks, dims);
                 for octant in 0..OCTANTS {
                     for k in 0..count {
                         let cell = [k % dims[0], k / dims[0] % dims[1], k / dims[0] / dims[1]];
                         let right = judged(&listed, dims, cell.map(i64::from), octant);
-                        let found = all[octant * count as usize + k as usize];
+                        let found = all[octant * bricks.len() + bricks.place(cell)];
                         let longest = *dims.iter().max().unwrap() as u8;
                         // Beyond the longest axis there is nothing, however far.
                         let found = if found >= longest { FAR } else { found };

@@ -88,13 +88,11 @@ pub(super) fn trace<'a, R: Rays<'a>>(grid: &GridSkip, batch: &mut R) {
             }
             ways.stop[lane] = flight.frame.stop(flight.visitor.t_limit());
         }
-        for lane in Ones(ways.advance(grid.dims) & under_way) {
+        for lane in Ones(ways.advance(grid.dims, &grid.bricks) & under_way) {
             let lane = lane % LANES;
             let flight = &mut flights[lane];
             batch.finish(flight.index, &flight.visitor);
             if !board(grid, batch, &mut waiting, &mut ways, lane, flight) {
-                ways.take(lane);
-                flight.direction = 0;
                 under_way &= !(1 << lane);
             }
         }
@@ -112,7 +110,7 @@ fn board<'a, R: Rays<'a>>(
     flight: &mut Flight<R::Visitor>,
 ) -> bool {
     for index in waiting {
-        let entered = ways.put(lane, &grid.lattice, &batch.rays()[index]);
+        let entered = ways.put(lane, &grid.lattice, &grid.bricks, &batch.rays()[index]);
         batch.begin_again(index, &mut flight.visitor);
         if let Some((frame, octant)) = entered {
             flight.index = index;

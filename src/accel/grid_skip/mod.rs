@@ -36,6 +36,7 @@ use super::{
     Structure, StructureStats, Visitor,
 };
 
+mod bricks;
 mod cells;
 mod distances;
 mod lanes;
@@ -45,6 +46,7 @@ mod tests;
 mod validate;
 mod walk;
 
+use bricks::Bricks;
 use cells::Cells;
 use distances::OCTANTS;
 use predict::Predictor;
@@ -71,6 +73,7 @@ pub(super) const ENTRY: AcceleratorEntry = AcceleratorEntry {
 #[derive(Debug)]
 struct GridSkip {
     lattice: Lattice,
+    bricks: Bricks,
     /// Cells along each axis.
     dims: [f32; 3],
     /// See `distances`.
@@ -105,25 +108,29 @@ impl GridSkip {
         }
         let mut lattice = Lattice::new(mesh.bounds(), predictor.model.dims(n));
         lattice.pad *= walk::PAD;
-        let most =
-            limit.saturating_sub(predict::bytes(lattice.len(), 0)) / predict::REFERENCE_BYTES;
+        let most = limit.saturating_sub(predict::bytes(lattice.dims, 0)) / predict::REFERENCE_BYTES;
         // A model that was too low for this mesh was so by an unknown factor: half the resolution is a safe advice.
         let less = || (n / 2).min(largest_n());
         let Some(lists) = settings.lists(&lattice, mesh, most) else {
             return Err(refuse(limit.saturating_add(1), less()));
         };
-        let listed = |cell: usize| lists.offsets[cell] != lists.offsets[cell + 1];
-        let mut cells = Cells::new(lattice.len() as usize, listed);
-        let shared = share(&lattice, &lists, &mut cells);
+        let bricks = Bricks::new(lattice.dims);
+        let listed = |place: usize| {
+            let cell = bricks.cell(place).map(|cell| lattice.index(cell) as usize);
+            cell.is_some_and(|cell| lists.offsets[cell] != lists.offsets[cell + 1])
+        };
+        let mut cells = Cells::new(bricks.len(), listed);
+        let shared = share(&lattice, &bricks, &lists, &mut cells);
         drop(lists);
-        let bytes = predict::bytes(lattice.len(), 0) + cells.bytes() + shared.bytes();
+        let bytes = predict::bytes(lattice.dims, 0) + cells.bytes() + shared.bytes();
         if bytes > limit {
             return Err(refuse(bytes, less()));
         }
         let grid = Self {
             dims: lattice.dims.map(|n| n as f32),
-            distances: distances::distances(&cells, lattice.dims),
+            distances: distances::distances(&cells, &bricks, lattice.dims),
             lattice,
+            bricks,
             cells,
             filled: shared.filled,
         };
@@ -141,11 +148,11 @@ impl GridSkip {
 const CHUNK: usize = 4096;
 
 /// Puts all that `lists` has into blocks, and the spans into `cells`.
-fn share(lattice: &Lattice, lists: &Lists, cells: &mut Cells) -> Shared {
+fn share(lattice: &Lattice, bricks: &Bricks, lists: &Lists, cells: &mut Cells) -> Shared {
     let mut listed = Vec::with_capacity(cells.spans.len());
-    cells.each_listed(0..lattice.len() as usize, |cell| {
-        let at = lattice.cell(cell as u64).unwrap_or_default();
-        listed.push((along_curve(at), listed.len() as u32, cell as u32));
+    cells.each_listed(0..bricks.len(), |place| {
+        let at = bricks.cell(place).unwrap_or_default();
+        listed.push((along_curve(at), listed.len() as u32, lattice.index(at)));
     });
     listed.par_sort_unstable();
     let put = |cells: &[(u32, u32, u32)]| {
@@ -185,7 +192,7 @@ impl Structure for GridSkip {
     #[inline(always)]
     fn traverse<I: Isa, V: Visitor>(&self, ray: &Ray, (): &mut (), visitor: &mut V) {
         let mut way = Ways::<1>::none();
-        let Some((frame, octant)) = way.put(0, &self.lattice, ray) else {
+        let Some((frame, octant)) = way.put(0, &self.lattice, &self.bricks, ray) else {
             return;
         };
         way.stop[0] = frame.stop(visitor.t_limit());
@@ -200,7 +207,7 @@ impl Structure for GridSkip {
             } else {
                 Span::default()
             };
-            let done = way.advance(self.dims) != 0;
+            let done = way.advance(self.dims, &self.bricks) != 0;
             if V::WATCHED {
                 let place = (direction + cell) as u64;
                 let references = span.references(&self.filled);
@@ -236,8 +243,8 @@ impl Structure for GridSkip {
 
     fn place_bounds(&self, place: u64) -> Option<Aabb> {
         let leap = *self.distances.get(place as usize)?;
-        let cell = self.lattice.cell(place % self.lattice.len())?;
-        let octant = (place / self.lattice.len()) as usize;
+        let cell = self.bricks.cell(place as usize % self.bricks.len())?;
+        let octant = place as usize / self.bricks.len();
         // The empty cube, or the one cell, within the grid.
         let more = u32::from(leap.max(1)) - 1;
         let down = |a: usize| octant >> a & 1 == 1;

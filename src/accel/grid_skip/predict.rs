@@ -8,6 +8,7 @@ use crate::scene::Mesh;
 use super::super::grid::Settings;
 use super::super::grid::density::ByDensity;
 use super::super::grid::predict::Model;
+use super::bricks::Bricks;
 use super::cells;
 use super::distances::OCTANTS;
 
@@ -22,9 +23,13 @@ const TWICE: f64 = 0.15;
 /// cells are sorted.
 pub(super) const REFERENCE_BYTES: u64 = 4 + 8 + 12;
 
-/// Bytes of a grid with this many cells and references, without the triangles; the greatest number where that is more.
-pub(super) fn bytes(cells: u64, references: u64) -> u64 {
-    let offsets = cells.saturating_add(1).saturating_mul(4);
+/// Bytes of a grid of these cells with so many references, without the triangles; the greatest number where that is more.
+pub(super) fn bytes(dims: [u32; 3], references: u64) -> u64 {
+    let listed = dims
+        .iter()
+        .fold(1_u64, |cells, &n| cells.saturating_mul(u64::from(n)));
+    let offsets = listed.saturating_add(1).saturating_mul(4);
+    let cells = Bricks::new(dims).count();
     cells
         .saturating_mul(OCTANTS as u64)
         .saturating_add(cells::bytes(cells))
@@ -55,6 +60,6 @@ impl ByDensity for Predictor {
     }
 
     fn bytes(&self, n: u32) -> u64 {
-        bytes(self.model.cells(n), self.model.references(n).ceil() as u64)
+        bytes(self.model.dims(n), self.model.references(n).ceil() as u64)
     }
 }

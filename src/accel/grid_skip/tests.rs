@@ -57,7 +57,7 @@ fn a_distance_one_too_great_is_found_in_every_direction() {
     let (mesh, accel) = (mesh(&sphere(8)), parse("grid-skip").unwrap());
     let (mut grid, slots) = GridSkip::new(&request(&mesh, &accel, 9)).unwrap();
     grid.validate(&mesh, &slots).unwrap();
-    let cells = grid.lattice.len() as usize;
+    let cells = grid.bricks.len();
     for octant in 0..OCTANTS {
         // From the middle on, so that there is something ahead.
         let place = (octant * cells + cells / 2..(octant + 1) * cells)

@@ -17,7 +17,8 @@ use super::distances::OCTANTS;
 pub(super) fn check(grid: &GridSkip, mesh: &Mesh, lanes: &[u32]) -> Result<(), String> {
     share::validate(&grid.filled, lanes, grid.cells.spans.iter().copied())?;
     let lists = |cell: usize, prim: u32| {
-        let rank = grid.cells.rank(cell);
+        let cell = grid.lattice.cell(cell as u64).unwrap_or_default();
+        let rank = grid.cells.rank(grid.bricks.place(cell));
         rank.is_some_and(|rank| share::holds(grid.cells.spans[rank], lanes, prim))
     };
     each_touched_cell(&grid.lattice, mesh, &lists)?;
@@ -31,7 +32,7 @@ pub(super) fn check(grid: &GridSkip, mesh: &Mesh, lanes: &[u32]) -> Result<(), S
 fn plane(grid: &GridSkip, octant: usize, z: u32) -> Result<(), String> {
     let [nx, ny, _] = grid.lattice.dims;
     let distance = |cell: [u32; 3]| {
-        let place = grid.direction(octant) + grid.lattice.index(cell) as usize;
+        let place = grid.direction(octant) + grid.bricks.place(cell);
         u32::from(grid.distances[place])
     };
     let ahead = |a: usize, i: u32| {
@@ -45,7 +46,7 @@ fn plane(grid: &GridSkip, octant: usize, z: u32) -> Result<(), String> {
     for (x, y) in (0..ny).flat_map(|y| (0..nx).map(move |x| (x, y))) {
         let cell = [x, y, z];
         let found = distance(cell);
-        let index = grid.lattice.index(cell) as usize;
+        let index = grid.bricks.place(cell);
         if (found == 0) != grid.cells.rank(index).is_some() {
             return Err(format!(
                 "cell {cell:?} has distance {found} in direction {octant}, against its bit"

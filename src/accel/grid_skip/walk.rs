@@ -30,6 +30,7 @@ use crate::geometry::Ray;
 
 use super::super::grid::lattice::Lattice;
 use super::super::grid::walk::{T_ERROR, clip};
+use super::bricks::Bricks;
 
 /// The shell of a cell, in shells of the uniform grid's: half a shell is 2⁻²¹ of the longest edge.
 pub(super) const PAD: f64 = 1.5;
@@ -91,9 +92,10 @@ pub(super) struct Ways<const W: usize> {
     place: [[f32; W]; 3],
     /// Number of the next plane.
     next: [[f32; W]; 3],
-    stride: [[i32; W]; 3],
-    /// Index of the cell before plane 0 of every axis.
-    corner: [i32; W],
+    /// All bits set where the ray goes down the axis.
+    down: [[i32; W]; 3],
+    /// Added to the number of the next plane, where the ray goes down its complement, this gives the cell's.
+    before: [[i32; W]; 3],
     /// The ray is done when a step ends here or later: see [`Frame::stop`].
     pub stop: [f32; W],
     /// Where the last step ended.
@@ -113,8 +115,8 @@ impl<const W: usize> Ways<W> {
             speed: [[0.0; W]; 3],
             place: [[0.0; W]; 3],
             next: [[1.0; W]; 3],
-            stride: [[0; W]; 3],
-            corner: [0; W],
+            down: [[0; W]; 3],
+            before: [[-1; W]; 3],
             stop: [1.0; W],
             exit: [0.0; W],
             leap: [0; W],
@@ -127,22 +129,28 @@ impl<const W: usize> Ways<W> {
     ///
     /// Out of line, so that it is compiled once for all kernels.
     #[inline(never)]
-    pub fn put(&mut self, lane: usize, lattice: &Lattice, ray: &Ray) -> Option<(Frame, usize)> {
+    pub fn put(
+        &mut self,
+        lane: usize,
+        lattice: &Lattice,
+        bricks: &Bricks,
+        ray: &Ray,
+    ) -> Option<(Frame, usize)> {
         let [from, end] = clip(lattice, ray)?;
         // Of the origin moved by a t of 24 bits each coordinate is rounded once.
         let base = f64::from_bits(from.to_bits() & !0x1FFF_FFFF);
         let unit = (end - from).max(SHORT);
-        let (mut cell, mut corner, mut stride, mut octant) = (0, 0, 1, 0);
+        let (mut cell, mut octant) = (0, 0);
         for a in 0..3 {
             let d = f64::from(ray.dir[a]);
             let at = (f64::from(ray.origin[a]) + base * d) + (from - base) * d;
             let cells = lattice.dims[a] as i32;
             // Cells passed since the side where rays of this direction enter.
-            let (passed, outside, along) = if d >= 0.0 {
-                (at - lattice.lo[a], -1, stride)
+            let (passed, down, before) = if d >= 0.0 {
+                (at - lattice.lo[a], 0, -1)
             } else {
                 octant |= 1 << a;
-                (lattice.hi[a] - at, cells, -stride)
+                (lattice.hi[a] - at, -1, cells + 1)
             };
             let passed = passed * lattice.inv_size[a];
             // The cast saturates and so clamps what rounding put outside.
@@ -159,13 +167,11 @@ impl<const W: usize> Ways<W> {
             self.speed[a][lane] = if is_slow { 0.0 } else { speed as f32 };
             self.place[a][lane] = passed as f32 + 0.5;
             self.next[a][lane] = next as f32;
-            self.stride[a][lane] = along;
-            corner += outside * stride;
-            cell += along * next;
-            stride *= cells;
+            self.down[a][lane] = down;
+            self.before[a][lane] = before;
+            cell += bricks.along(a, (next ^ down) + before);
         }
-        self.corner[lane] = corner;
-        self.cell[lane] = corner + cell;
+        self.cell[lane] = cell;
         self.exit[lane] = 0.0;
         let frame = Frame {
             from,
@@ -176,19 +182,10 @@ impl<const W: usize> Ways<W> {
         Some((frame, octant))
     }
 
-    /// Takes the ray out of a lane, which stays at cell 0 from now on.
-    pub fn take(&mut self, lane: usize) {
-        for a in 0..3 {
-            self.stride[a][lane] = 0;
-        }
-        self.corner[lane] = 0;
-        self.cell[lane] = 0;
-    }
-
     /// Lets every ray leave the cube ahead, in a grid of so many cells along each axis, and enter a cell, which is one of
-    /// the grid. The bits of those that are done are set.
+    /// the grid even where the ray was done before. The bits of those that are done are set.
     #[inline(always)]
-    pub fn advance(&mut self, cells: [f32; 3]) -> u32 {
+    pub fn advance(&mut self, cells: [f32; 3], bricks: &Bricks) -> u32 {
         for l in 0..W {
             // A loop over the lanes, with no branch that depends on numbers, becomes vector instructions.
             let ahead = self.leap[l].max(1) as f32 - 1.0;
@@ -202,7 +199,7 @@ impl<const W: usize> Ways<W> {
                 at[a] = if last[a] < cells[a] { t } else { f32::INFINITY };
                 exit = if at[a] < exit { at[a] } else { exit };
             }
-            let mut cell = self.corner[l];
+            let mut cell = 0_i32;
             for a in 0..3 {
                 let crossed = if at[a] == exit {
                     last[a] + 1.0
@@ -216,7 +213,8 @@ impl<const W: usize> Ways<W> {
                 let next = if next < cells[a] { next } else { cells[a] };
                 self.next[a][l] = next;
                 let number = (next + WHOLE).to_bits() as i32 - WHOLE.to_bits() as i32;
-                cell = cell.wrapping_add(number.wrapping_mul(self.stride[a][l]));
+                let number = (number ^ self.down[a][l]) + self.before[a][l];
+                cell = cell.wrapping_add(bricks.along(a, number));
             }
             self.cell[l] = cell;
             self.exit[l] = exit;

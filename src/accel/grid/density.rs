@@ -1,4 +1,4 @@
-//! The best n of a grid whose speed has no closed form: the one with a fitted number of cells a triangle.
+//! The best n of a grid whose speed has no closed form: the one with a certain number of cells a triangle.
 
 use crate::accel::{MAX_N, Prediction};
 
@@ -6,13 +6,14 @@ use super::predict::{Model, least};
 
 /// What such a grid tells of itself.
 pub(in super::super) trait ByDensity {
-    /// Cells a triangle of the best grid.
-    const DENSITY: f64;
     /// How much an n costs that is twice or half the best.
     const TWICE: f64;
 
     /// The uniform grid's model of the mesh.
     fn model(&self) -> &Model;
+
+    /// Cells a triangle of the best grid.
+    fn density(&self) -> f64;
 
     /// Bytes at `n`, without the triangles.
     fn bytes(&self, n: u32) -> u64;
@@ -26,7 +27,7 @@ pub(in super::super) trait ByDensity {
     /// Cost of a ray at `n`, in units of the best: a parabola over the logarithm of the density.
     fn cost(&self, n: u32) -> f64 {
         let density = self.model().cells(n) as f64 / self.model().triangles().max(1.0);
-        let octaves = (density / Self::DENSITY).log2() / 3.0;
+        let octaves = (density / self.density()).log2() / 3.0;
         1.0 + Self::TWICE * octaves * octaves
     }
 

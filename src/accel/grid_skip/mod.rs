@@ -1,12 +1,12 @@
 //! A uniform grid whose rays leap over empty space: each empty cell knows how large a cube ahead of it is empty too.
 //!
 //! ```text
-//!   +---+---+---+---+---+---+---+
+//!   +---+---+---+---+---+---+---+      bricks      where in memory a cell is
 //!   |   |   |   |   |   | # | # |      distances   per direction, how far a ray may leap
 //!   +---+---+---+---+---+---+---+      cells       which cells list triangles, and in which blocks
 //!   | o===========>---->|>#>|   |      walk        the ways of several rays at once, one step
 //!   +---+---+---+---+---+---+---+      lanes       sixteen rays of a batch side by side
-//!   |   |   |   |   |   |   |   |      predict     what it will take, and the best n
+//!   |   |   |   |   |   |   |   |      predict     what it will take, and the best n; crowding: where triangles crowd
 //!   +---+---+---+---+---+---+---+
 //! ```
 //!
@@ -38,6 +38,7 @@ use super::{
 
 mod bricks;
 mod cells;
+mod crowding;
 mod distances;
 mod lanes;
 mod predict;
@@ -59,8 +60,8 @@ pub(super) const ENTRY: AcceleratorEntry = AcceleratorEntry {
     params: &[Settings::OVERLAP, Settings::CUBIC_SHAPE],
     control: false,
     resolution: Some(Resolution {
-        auto: |mesh, params| Predictor::new(mesh, Settings::read(params)).best().0,
-        predict: |mesh, params, n| Predictor::new(mesh, Settings::read(params)).predict(n),
+        auto: |mesh, params| Predictor::looking(mesh, Settings::read(params)).best().0,
+        predict: |mesh, params, n| Predictor::looking(mesh, Settings::read(params)).predict(n),
     }),
     peer: None,
     build: |request| {

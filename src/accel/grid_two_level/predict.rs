@@ -39,11 +39,14 @@ impl Predictor {
 }
 
 impl ByDensity for Predictor {
-    const DENSITY: f64 = COARSE_DENSITY;
     const TWICE: f64 = TWICE;
 
     fn model(&self) -> &Model {
         &self.model
+    }
+
+    fn density(&self) -> f64 {
+        COARSE_DENSITY
     }
 
     fn bytes(&self, n: u32) -> u64 {

@@ -4,19 +4,22 @@
 //! made from the top down. Both are shared among threads. Small subtrees are made apart and put behind each other, in the
 //! order in which they were found, whatever the number of threads.
 
+use std::cmp::Reverse;
+
 use rayon::prelude::*;
 
 use crate::scene::Mesh;
 
 use super::super::bvh::{BinaryTree, Node as BinaryNode};
-use super::super::items::{LANES, fill};
 use super::super::pages;
 use super::super::sah::half_area;
 use super::super::slab::Scene;
 use super::{BvhWide, Child, Node};
 
-use plan::{APART, Choice, MOST_BLOCKS, Subtree, WIDTH, choices};
+use filling::{Filling, Prims};
+use plan::{APART, Choice, Subtree, WIDTH, choices};
 
+mod filling;
 mod plan;
 
 /// Subtrees that together become the lanes of a node.
@@ -29,8 +32,7 @@ struct Lanes {
 #[derive(Debug, Default)]
 struct Part {
     nodes: Vec<Node>,
-    slots: Vec<u32>,
-    filled: Vec<u8>,
+    blocks: Filling,
     depth: u32,
     /// Subtrees with fewer binary nodes are put apart.
     least: usize,
@@ -49,7 +51,7 @@ struct Apart {
 impl Part {
     /// Appends what was made apart, and puts its root into its lane.
     fn append(&mut self, apart: &Apart, child: Child, part: &Self) {
-        let (nodes, blocks) = (self.nodes.len() as u32, self.filled.len() as u32);
+        let (nodes, blocks) = (self.nodes.len() as u32, self.blocks.filled.len() as u32);
         self.nodes.extend(part.nodes.iter().map(|node| {
             Node {
                 boxes: node.boxes,
@@ -58,8 +60,7 @@ impl Part {
                     .map(|child| Child(child).moved(nodes, blocks).0),
             }
         }));
-        self.slots.extend_from_slice(&part.slots);
-        self.filled.extend_from_slice(&part.filled);
+        self.blocks.append(&part.blocks);
         self.depth = self.depth.max(part.depth);
         self.nodes[apart.node].children[apart.lane] = child.moved(nodes, blocks).0;
     }
@@ -86,13 +87,12 @@ struct Collapse<'a> {
 }
 
 impl BvhWide {
-    /// Collapses `tree`, whose leaves hold at most [`LANES`] references each; also returns the triangle of every lane of
+    /// Collapses `tree`, whose leaves hold at most as many references as a block has lanes each; also returns the triangle of every lane of
     /// every block.
     pub(super) fn collapse(tree: &BinaryTree, mesh: &Mesh) -> (Self, Vec<u32>) {
         let mut part = Part {
             nodes: pages::with_capacity(tree.nodes.len() / 12),
-            slots: pages::with_capacity(tree.references.len() * 2),
-            filled: Vec::with_capacity(tree.references.len() / 4),
+            blocks: Filling::with_capacity(tree.references.len()),
             ..Part::default()
         };
         let root = if tree.nodes.is_empty() {
@@ -109,11 +109,11 @@ impl BvhWide {
             nodes: part.nodes,
             root,
             scene: Scene::new(mesh.bounds()),
-            filled: part.filled,
+            filled: part.blocks.filled,
             depth: part.depth,
             way: None,
         };
-        (wide, part.slots)
+        (wide, part.blocks.slots)
     }
 }
 
@@ -130,6 +130,7 @@ impl Collapse<'_> {
         if rayon::current_num_threads() == 1 {
             // The same without the copies.
             for apart in all_apart {
+                top.blocks.close();
                 let child = self.child(apart.subtree, apart.depth, top);
                 top.nodes[apart.node].children[apart.lane] = child.0;
             }
@@ -153,7 +154,7 @@ impl Collapse<'_> {
         let choice = self.choices[subtree.root];
         if choice.is_leaf() {
             part.depth = part.depth.max(depth);
-            return self.leaf(subtree, part);
+            return part.blocks.leaf(&self.prims(subtree));
         }
         let mut lanes = Lanes {
             subtrees: [Subtree::NONE; WIDTH],
@@ -169,9 +170,14 @@ impl Collapse<'_> {
         sorted[..lanes.count].sort_by(|a, b| a.0.total_cmp(&b.0));
         let node = part.nodes.len();
         part.nodes.push(Node::EMPTY);
-        for (lane, (_, subtree)) in sorted[..lanes.count].iter().enumerate() {
-            let below = subtree.below(self.nodes);
-            let child = if below < part.least && !self.choices[subtree.root].is_leaf() {
+        let sorted = sorted.map(|(_, subtree)| subtree);
+        let sorted = &sorted[..lanes.count];
+        let leaves = self.leaves(sorted, &mut part.blocks);
+        for (lane, subtree) in sorted.iter().enumerate() {
+            let child = if self.choices[subtree.root].is_leaf() {
+                part.depth = part.depth.max(depth + 1);
+                leaves[lane]
+            } else if subtree.below(self.nodes) < part.least {
                 part.apart.push(Apart {
                     subtree: *subtree,
                     depth: depth + 1,
@@ -209,27 +215,28 @@ impl Collapse<'_> {
         }
     }
 
-    /// Fills blocks with the triangles of `subtree`, each once, the lowest index first.
-    fn leaf(&self, subtree: Subtree, part: &mut Part) -> Child {
-        let references = &self.references[subtree.references(self.nodes)];
-        let count = references.len();
-        let mut prims = [0; MOST_BLOCKS * LANES];
-        let prims = &mut prims[..count];
-        prims.copy_from_slice(references);
-        prims.sort_unstable();
-        let mut kept = 1;
-        for i in 1..count {
-            if prims[i] != prims[kept - 1] {
-                prims[kept] = prims[i];
-                kept += 1;
+    /// Makes the leaves among the children of a node, the fullest first, so that the others find room.
+    fn leaves(&self, children: &[Subtree], blocks: &mut Filling) -> [Child; WIDTH] {
+        let mut leaves = [Child::NONE; WIDTH];
+        let mut waiting = [(Prims::NONE, 0); WIDTH];
+        let mut count = 0;
+        for (lane, subtree) in children.iter().enumerate() {
+            if self.choices[subtree.root].is_leaf() {
+                waiting[count] = (self.prims(*subtree), lane);
+                count += 1;
             }
         }
-        let first = part.filled.len();
-        for block in prims[..kept].chunks(LANES) {
-            part.filled.push(block.len() as u8);
-            fill(&mut part.slots, block);
+        let waiting = &mut waiting[..count];
+        waiting.sort_by_key(|(prims, _)| Reverse(prims.count()));
+        for (prims, lane) in waiting {
+            leaves[*lane] = blocks.leaf(prims);
         }
-        Child::leaf(first, part.filled.len() - first)
+        leaves
+    }
+
+    /// The triangles of `subtree`.
+    fn prims(&self, subtree: Subtree) -> Prims {
+        Prims::of(&self.references[subtree.references(self.nodes)])
     }
 }
 
@@ -237,6 +244,7 @@ impl Collapse<'_> {
 mod tests {
     use super::super::super::Structure;
     use super::super::super::bvh::{Build, grouped};
+    use super::super::super::items::LANES;
     use super::super::super::testbed::{assert_same_on_threads, mesh, soup};
     use super::*;
     use crate::geometry::Vec3;
@@ -270,7 +278,12 @@ mod tests {
                     let tree = grouped(&mesh, Build::Binned);
                     let (wide, slots) = BvhWide::collapse(&tree, &mesh);
                     assert_eq!(wide.validate(&mesh, &slots), Ok(()));
-                    let is_few = |leaf: Child| leaf.is_leaf() && wide.references(leaf) == few;
+                    // They may share their block with others.
+                    let is_few = |leaf: Child| {
+                        let blocks = leaf.blocks();
+                        let lanes = blocks.start as usize * LANES..blocks.end as usize * LANES;
+                        leaf.is_leaf() && (0..few).all(|prim| slots[lanes.clone()].contains(&prim))
+                    };
                     let top = wide.nodes[0].children();
                     assert!(top.into_iter().any(|(child, _)| is_few(child)));
                 }

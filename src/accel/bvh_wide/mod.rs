@@ -100,7 +100,7 @@ impl Child {
         first..first + (self.0 & Self::MOST)
     }
 
-    /// The number by which visitors know it: nodes first, then leaves by their first block.
+    /// The number by which visitors know it: nodes first, then leaves by their first block, which several may share.
     fn place(self) -> u64 {
         if self.is_leaf() {
             LEAVES | u64::from(self.blocks().start)
@@ -215,8 +215,8 @@ impl Structure for BvhWide {
     }
 
     fn place_bounds(&self, place: u64) -> Option<Aabb> {
-        let found = self.children().find(|(child, _)| child.place() == place);
-        found.map(|(_, bounds)| bounds)
+        let found = self.children().filter(|(child, _)| child.place() == place);
+        found.map(|(_, bounds)| bounds).reduce(Aabb::union)
     }
 
     fn stats(&self) -> StructureStats {

@@ -7,7 +7,7 @@ use super::super::items::LANES;
 use super::super::stack::MAX_DEPTH;
 use super::{BvhWide, Child};
 
-/// Checks boxes, depth, that each node and block is some child's exactly once, and that every triangle is in some leaf
+/// Checks boxes, depth, that each node is some child's exactly once and each block some leaf's, and that every triangle is in some leaf
 /// whose box meets its own.
 pub(super) fn validate(tree: &BvhWide, mesh: &Mesh, lanes: &[u32]) -> Result<(), String> {
     if tree.depth as usize > MAX_DEPTH {
@@ -40,8 +40,11 @@ pub(super) fn validate(tree: &BvhWide, mesh: &Mesh, lanes: &[u32]) -> Result<(),
             }
         }
     }
-    if nodes.iter().chain(&blocks).any(|count| *count != 1) {
-        return Err("a node or block has not exactly one parent".to_owned());
+    if nodes.iter().any(|count| *count != 1) {
+        return Err("a node has not exactly one parent".to_owned());
+    }
+    if blocks.contains(&0) {
+        return Err("a block is no leaf's".to_owned());
     }
     triangles_are_covered(tree, mesh, lanes)
 }

@@ -70,7 +70,7 @@ impl Truths {
     /// Asks `accel` both queries about all rays, batch by batch in the current rayon pool, and counts what the answers
     /// are worth. Nothing is kept of an answer once it is judged.
     pub(super) fn judge(&self, accel: &dyn Accelerator, rays: &[Ray], place: Place) -> Accuracy {
-        let batches = rays.par_chunks(BATCH).zip(&self.batches);
+        let batches = rays.par_chunks(BATCH).zip(&self.batches).with_max_len(1);
         let tally = batches.fold(Tally::default, |mut tally, (rays, truths)| {
             let mut hits = vec![Hit::MISS; rays.len()];
             let mut blocked = vec![false; rays.len()];

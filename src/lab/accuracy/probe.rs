@@ -168,7 +168,7 @@ impl Probes {
             let seen = again.iter().zip(&left).filter(|(a, l)| a.prim == **l);
             (seen.count() as u64, leaving.len() as u64)
         };
-        let sums = batches.enumerate().map(of_batch);
+        let sums = batches.enumerate().with_max_len(1).map(of_batch);
         let (seen, rays) = sums.reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
         Rate::of(seen, rays)
     }

@@ -92,6 +92,7 @@ impl TruthBatch {
 /// Asks the oracle about all rays, in the current rayon pool; one batch for each [`BATCH`] rays.
 pub(super) fn batches(oracle: &Oracle, rays: &[Ray]) -> Vec<TruthBatch> {
     rays.par_chunks(BATCH)
+        .with_max_len(1)
         .map(|rays| TruthBatch::of(oracle, rays))
         .collect()
 }

@@ -6,7 +6,7 @@ use ratatui::style::Style;
 use ratatui::text::{Line, Span};
 
 use crate::lab::{NRule, Place};
-use crate::preview::{Picture, legend_bar};
+use crate::preview::{ColorMode, Picture, legend_bar};
 use crate::tui::figures::{counted, figure, mebibytes};
 use crate::tui::layout;
 use crate::tui::picture::{Figures, Wish};
@@ -93,10 +93,12 @@ fn figures(state: &State, frame: &mut Frame, area: Rect) {
     frame.render_widget(block, area);
     let width = inner.width as usize;
     let quiet = state.theme.style(Role::Quiet);
-    let rows = choices(&state.picture.wish).into_iter().chain(measured(
-        &state.picture.wish,
-        state.picture.current_figures(),
-    ));
+    let rows = choices(&state.picture.wish, state.theme.mode())
+        .into_iter()
+        .chain(measured(
+            &state.picture.wish,
+            state.picture.current_figures(),
+        ));
     let lines: Vec<Line> = rows
         .map(|(name, value, key)| {
             let room = width.saturating_sub(13 + key.chars().count());
@@ -160,12 +162,17 @@ fn meaning(state: &State, frame: &mut Frame, area: Rect) {
     }
 }
 
-/// What was chosen, and the key that changes it.
-fn choices(wish: &Wish) -> Vec<(&'static str, String, &'static str)> {
+/// What was chosen, and the key that changes it. Without colours characters are drawn, whatever the symbols.
+fn choices(wish: &Wish, mode: ColorMode) -> Vec<(&'static str, String, &'static str)> {
     let n = match (wish.has_n(), wish.n) {
         (false, _) => "-".to_owned(),
         (true, NRule::Auto) => "auto".to_owned(),
         (true, NRule::Fixed(n)) => n.to_string(),
+    };
+    let symbols = if mode == ColorMode::None {
+        "ascii"
+    } else {
+        wish.symbols.name
     };
     vec![
         ("scene", wish.scene.clone(), " [ ]"),
@@ -173,7 +180,7 @@ fn choices(wish: &Wish) -> Vec<(&'static str, String, &'static str)> {
         ("grid n", n, " n N"),
         ("kernel", kernel_label(&wish.kernel), " m"),
         ("channel", wish.channel.name.to_owned(), " c"),
-        ("symbols", wish.symbols.name.to_owned(), " b"),
+        ("symbols", symbols.to_owned(), " b"),
     ]
 }
 

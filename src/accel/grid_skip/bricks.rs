@@ -16,10 +16,12 @@ pub(super) const BRICK: usize = 1 << (3 * EDGE);
 /// The bricks over cells; those at the far sides may reach beyond.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bricks {
+    /// Cells along each axis.
     dims: [u32; 3],
-    bricks: [u32; 3],
+    /// Bricks along each axis.
+    across: [u32; 3],
     /// What a step of a brick along each axis adds to the place of a cell, beyond what its four cells add anyway.
-    pub more: [i32; 3],
+    more: [i32; 3],
 }
 
 impl Bricks {
@@ -36,7 +38,11 @@ impl Bricks {
             let within = 1 << (EDGE * (a as u32 + 1));
             step[a].wrapping_sub(within) as i32
         });
-        Self { dims, bricks, more }
+        Self {
+            dims,
+            across: bricks,
+            more,
+        }
     }
 
     /// Places of cells, with those that lie beyond the far sides.
@@ -46,7 +52,7 @@ impl Bricks {
 
     /// [`Bricks::len`] of however many cells.
     pub fn count(&self) -> u64 {
-        let bricks = self.bricks.map(u64::from);
+        let bricks = self.across.map(u64::from);
         (bricks[0] * bricks[1]).saturating_mul(bricks[2] * BRICK as u64)
     }
 
@@ -64,7 +70,7 @@ impl Bricks {
     /// The cell at a place; `None` where it lies beyond.
     pub fn cell(&self, place: usize) -> Option<[u32; 3]> {
         let (brick, within) = ((place / BRICK) as u32, place % BRICK);
-        let [bx, by, _] = self.bricks;
+        let [bx, by, _] = self.across;
         let at = [brick % bx, brick / bx % by, brick / bx / by];
         let cell =
             std::array::from_fn(|a| (at[a] << EDGE) + (within >> (EDGE * a as u32) & 3) as u32);

@@ -16,8 +16,9 @@ use super::machine::{self, Pools};
 use super::subset::{measured, stratified};
 use super::{NRule, PerRay, Plan, RunConfig, RunRecord, StopReason, sampling};
 
-/// A build shorter than this many milliseconds is made three times, …
-const CHEAP_MS: f64 = 100.0;
+/// A build shorter than this many milliseconds is made three times, so that its median is of a warm allocator: a first build
+/// takes up to twice as long, and beside smaller ones would pass for how costs grow, …
+const CHEAP_MS: f64 = 500.0;
 /// … and one shorter than this five times.
 const VERY_CHEAP_MS: f64 = 10.0;
 

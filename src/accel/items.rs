@@ -10,8 +10,7 @@
 
 use rayon::prelude::*;
 
-use crate::geometry::Ray;
-use crate::geometry::lanes::{InstructionSet, Isa, Lane, LaneMask, LaneRay, Ones, Portable, Task};
+use crate::geometry::lanes::{InstructionSet, Isa, Lane, LaneMask, Ones, Portable, Task};
 use crate::kernel::{Kernel, LaneHit};
 use crate::scene::Mesh;
 
@@ -33,8 +32,6 @@ pub trait Items: Sized + Send + Sync + 'static {
     const LANES: bool;
     /// What is tested at once.
     type Item<K: Kernel>: Send + Sync;
-    /// A ray prepared for the test.
-    type Prepared<K: Kernel, I: Isa>: Copy;
 
     /// Packs the triangles with these indices, in this order; for blocks whole ones, see `fill`.
     fn pack<K: Kernel>(kernel: &K, mesh: &Mesh, slots: &[u32]) -> Vec<Self::Item<K>>;
@@ -43,9 +40,6 @@ pub trait Items: Sized + Send + Sync + 'static {
     fn lanes<K: Kernel>(_items: &[Self::Item<K>]) -> Vec<u32> {
         Vec::new()
     }
-
-    /// Prepares a ray.
-    fn prepare<K: Kernel, I: Isa>(kernel: &K, ray: &Ray) -> Self::Prepared<K, I>;
 
     /// Tests an item; returns true when the query is finished.
     fn test<K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool>(
@@ -119,7 +113,6 @@ pub(super) fn fill(slots: &mut Vec<u32>, prims: &[u32]) {
 impl Items for Singles {
     const LANES: bool = false;
     type Item<K: Kernel> = K::Packed<1>;
-    type Prepared<K: Kernel, I: Isa> = K::Prepared<1, f32>;
 
     fn pack<K: Kernel>(kernel: &K, mesh: &Mesh, slots: &[u32]) -> Vec<K::Packed<1>> {
         let pack = |prim: &u32| kernel.pack(|_| mesh.corners(*prim));
@@ -127,16 +120,11 @@ impl Items for Singles {
     }
 
     #[inline(always)]
-    fn prepare<K: Kernel, I: Isa>(kernel: &K, ray: &Ray) -> K::Prepared<1, f32> {
-        kernel.prepare(ray, &LaneRay::splat(ray))
-    }
-
-    #[inline(always)]
     fn test<K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool>(
         query: &mut Query<'_, Self, K, I, C, OCCLUSION>,
         prim: u32,
     ) -> bool {
-        let (packed, prepared) = (query.packed, query.prepared());
+        let (packed, prepared) = (query.packed, query.prepared::<1, f32>());
         let found = packed
             .kernel
             .intersect(&prepared, &packed.items[prim as usize]);
@@ -184,7 +172,6 @@ impl Items for Singles {
 impl Items for Blocks {
     const LANES: bool = true;
     type Item<K: Kernel> = Block<K::Packed<LANES>>;
-    type Prepared<K: Kernel, I: Isa> = K::Prepared<LANES, I::X8>;
 
     fn pack<K: Kernel>(kernel: &K, mesh: &Mesh, slots: &[u32]) -> Vec<Self::Item<K>> {
         let mut blocks = pages::with_capacity(slots.len() / LANES);
@@ -201,16 +188,11 @@ impl Items for Blocks {
     }
 
     #[inline(always)]
-    fn prepare<K: Kernel, I: Isa>(kernel: &K, ray: &Ray) -> K::Prepared<LANES, I::X8> {
-        kernel.prepare(ray, &LaneRay::splat(ray))
-    }
-
-    #[inline(always)]
     fn test<K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool>(
         query: &mut Query<'_, Self, K, I, C, OCCLUSION>,
         item: u32,
     ) -> bool {
-        let (packed, prepared) = (query.packed, query.prepared());
+        let (packed, prepared) = (query.packed, query.prepared::<LANES, I::X8>());
         let block = &packed.items[item as usize];
         let found = packed.kernel.intersect(&prepared, &block.triangles);
         if C::COUNTS {
@@ -312,7 +294,8 @@ impl Items for Blocks {
 mod tests {
     use super::super::testbed::{Dice, mesh};
     use super::*;
-    use crate::geometry::Vec3;
+    use crate::geometry::lanes::LaneRay;
+    use crate::geometry::{Ray, Vec3};
     use crate::kernel::{self, KernelUser};
 
     /// A ray and a block of triangles: which of them the kernel hits, and the boxes of which are met.
@@ -328,7 +311,7 @@ mod tests {
         fn run<I: Isa>(self) -> Self::Out {
             let Self { kernel, mesh, ray } = self;
             let block = &Blocks::pack(kernel, mesh, &[0, 1, 2, 3, 4, 5, 5, 5])[0];
-            let prepared = Blocks::prepare::<K, I>(kernel, &ray);
+            let prepared = kernel.prepare::<LANES, I::X8>(&ray, &LaneRay::splat(&ray));
             let hit = kernel.intersect(&prepared, &block.triangles);
             let scene = Scene::new(mesh.bounds());
             let slabs = WideSlabRay::new::<I::X8>(&ray, &scene);

@@ -1,8 +1,10 @@
 //! A query of one ray: it keeps the nearest hit of what a traversal offers.
 
-use crate::geometry::lanes::{Isa, Lane, Task};
+use std::marker::PhantomData;
+
+use crate::geometry::lanes::{Isa, Lane, LaneRay, Task};
 use crate::geometry::{Hit, Ray};
-use crate::kernel::{Kernel, LaneHit};
+use crate::kernel::{Kernel, LaneHit, PreparedRay};
 use crate::scene::Mesh;
 
 use super::items::Items;
@@ -19,8 +21,10 @@ pub struct Packed<T: Items, K: Kernel> {
 pub struct Query<'a, T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool> {
     pub packed: &'a Packed<T, K>,
     pub ray: &'a Ray,
-    /// Made when the first item is tested: many rays meet none.
-    prepared: Option<T::Prepared<K, I>>,
+    /// Made when the first item is tested, since many rays meet none; one lane, spread where it is read: to write eight and
+    /// read them back took longer.
+    prepared: Option<K::Prepared<1, f32>>,
+    lanes: PhantomData<I>,
     /// The answer so far.
     pub best: Hit,
     limit: f32,
@@ -36,6 +40,7 @@ impl<'a, T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool>
     pub fn new(packed: &'a Packed<T, K>, ray: &'a Ray, counter: C) -> Self {
         Self {
             prepared: None,
+            lanes: PhantomData,
             packed,
             ray,
             best: Hit::MISS,
@@ -57,15 +62,13 @@ impl<'a, T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool>
 
     /// The ray in the kernel's form.
     #[inline(always)]
-    pub fn prepared(&mut self) -> T::Prepared<K, I> {
+    pub fn prepared<const W: usize, L: Lane<W>>(&mut self) -> K::Prepared<W, L> {
         let (kernel, ray) = (&self.packed.kernel, self.ray);
-        if K::CHEAPLY_PREPARED {
-            return T::prepare::<K, I>(kernel, ray);
+        if K::Prepared::<W, L>::CHEAP {
+            return kernel.prepare(ray, &LaneRay::splat(ray));
         }
-        match self.prepared {
-            Some(prepared) => prepared,
-            None => *self.prepared.insert(T::prepare::<K, I>(kernel, ray)),
-        }
+        let prepare = || kernel.prepare(ray, &LaneRay::splat(ray));
+        K::Prepared::spread(self.prepared.get_or_insert_with(prepare))
     }
 
     /// Greatest `t` that can still be preferred, as far as an `f32` tells: the one above it for a kernel that compares more

@@ -27,6 +27,7 @@ mod moller_trumbore;
 mod moller_trumbore_f64;
 mod pbrt;
 mod plucker;
+mod prepared;
 mod shear;
 mod sheet;
 mod sheet_signed;
@@ -43,6 +44,7 @@ pub use moller_trumbore::MollerTrumbore;
 pub use moller_trumbore_f64::MollerTrumboreF64;
 pub use pbrt::Pbrt;
 pub use plucker::Plucker;
+pub use prepared::PreparedRay;
 pub use sheet_signed::SheetSigned;
 pub use sheet_unsigned::SheetUnsigned;
 pub use woop::Woop;
@@ -73,7 +75,7 @@ pub trait Kernel: Debug + Clone + Send + Sync + 'static {
     /// `W` triangles in the form that the test reads.
     type Packed<const W: usize>: Debug + Clone + Send + Sync;
     /// A ray in the form that the test reads, made once a ray.
-    type Prepared<const W: usize, L: Lane<W>>: Copy;
+    type Prepared<const W: usize, L: Lane<W>>: PreparedRay<W, L, Self::Prepared<1, f32>>;
 
     /// Whether hits are compared more exactly than their `f32` `t` tells, by [`Kernel::within`] and [`Kernel::nearer`].
     const EXACT_T: bool = false;
@@ -90,9 +92,6 @@ pub trait Kernel: Debug + Clone + Send + Sync + 'static {
 
     /// Whether the traversals of structures are compiled for it: a control need not be fast.
     const DIRECT: bool = true;
-
-    /// Whether to prepare a ray again costs no more than to keep what was prepared.
-    const CHEAPLY_PREPARED: bool = false;
 
     /// The corners of a block's triangles, off by no more than a rounding of an edge; asked only where
     /// [`Kernel::PACKETS`] says so.

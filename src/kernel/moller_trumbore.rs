@@ -134,7 +134,6 @@ impl<const EPS: bool> Kernel for MollerTrumbore<EPS> {
     // A control need not be fast, and is compiled sooner.
     const PACKETS: bool = !EPS;
     const DIRECT: bool = !EPS;
-    const CHEAPLY_PREPARED: bool = true;
 
     #[inline(always)]
     fn corners<L: Lane<8>>(block: &Packed<8>) -> [LaneVec3<L>; 3] {

@@ -19,6 +19,7 @@ use crate::geometry::lanes::{Lane, LaneMask, LaneRay, LaneVec3};
 use crate::geometry::{DVec3, Ray, Vec3};
 
 use super::error::{self, HUGE, TINY, gamma};
+use super::prepared::{self, PreparedRay};
 use super::{Corners, LaneHit};
 
 /// The axes in the order x, y, z of the sheared frame, and the shear; `M` are truth values, one a lane.
@@ -29,6 +30,18 @@ pub struct Prepared<L, M> {
     turned: Option<[M; 2]>,
     pub(super) origin: LaneVec3<L>,
     shear: LaneVec3<L>,
+}
+
+impl<const W: usize, L: Lane<W>> PreparedRay<W, L, Prepared<f32, bool>> for Prepared<L, L::Mask> {
+    #[inline(always)]
+    fn spread(one: &Prepared<f32, bool>) -> Self {
+        Self {
+            axes: one.axes,
+            turned: None,
+            origin: prepared::spread(one.origin),
+            shear: prepared::spread(one.shear),
+        }
+    }
 }
 
 /// How a kernel computes an edge function.
@@ -236,41 +249,41 @@ fn largest<const W: usize, L: Lane<W>>([x, y, z]: [L; 3]) -> L {
     LaneVec3 { x, y, z }.largest()
 }
 
-/// The bound of [`t_error`] from what was rounded, so a little larger, for hits of each lane.
+/// A bound as that of [`t_error`], for hits of each lane: of few operations, since a hit costs no more than that and the test.
+///
+/// With q = m + 2·r, m the greatest sheared |x| or |y| and r the greatest |z| before it is scaled: a shear is at most 1, so
+/// the corners before they were sheared are at most q away, and sheared ones are off by γ(5)·q. Then an edge function is off
+/// by 2·(γ(2)·X + 2·γ(5)·q)·X, where X = m + γ(5)·q. As the edge functions have one sign, `t` lies between the corners' z,
+/// and they are at most two ranges of z from it, together.
 #[inline(always)]
 pub(super) fn t_error_bound<const W: usize, L: Lane<W>, E: Edge>(
     ray: &Prepared<L, L::Mask>,
     tri: &Corners<W>,
-    t: L,
 ) -> L {
-    let corners = sheared(ray, tri);
-    let [x, y, reach] = farthest(&corners);
-    let [a, b, c] = corners;
-    let (moved_x, moved_y) = (ray.shear.x.abs() * reach, ray.shear.y.abs() * reach);
-    let (underflow, two) = (L::splat(error::UNDERFLOW), L::splat(2.0));
-    // The corners before they were sheared are at most as far as those after, and moved as far.
-    let gamma5 = L::splat(error::wide_gamma(5));
-    let dx = gamma5 * (x + two * moved_x) + underflow;
-    let dy = gamma5 * (y + two * moved_y) + underflow;
-    let (x, y) = (x + dx, y + dy);
-    let de = two * (L::splat(error::wide_gamma(2)) * x * y + dx * y + dy * x) + underflow;
-    let (az, bz, cz) = (ray.shear.z * a.z, ray.shear.z * b.z, ray.shear.z * c.z);
-    let z = largest([az, bz, cz]);
-    let dz = L::splat(error::wide_gamma(12)) * z + underflow * (reach + L::splat(1.0));
-    let spread = (az - t).abs() + (bz - t).abs() + (cz - t).abs() + L::splat(3.0) * dz;
-    // As `test` computes it.
+    const GAMMA5: f32 = error::wide_gamma(5);
+    const EDGE: f32 = 4.0 * GAMMA5 + 2.0 * error::wide_gamma(2);
+    let [a, b, c] = sheared(ray, tri);
+    let across = |p: LaneVec3<L>| p.x.abs().max(p.y.abs());
+    let most = across(a).max(across(b)).max(across(c));
+    let (least_z, most_z) = (a.z.min(b.z).min(c.z), a.z.max(b.z).max(c.z));
+    let scale = ray.shear.z.abs();
+    let reach = most_z.max(-least_z);
+    let q = (reach + reach) + most;
+    let x = q.mul_add_freely(L::splat(GAMMA5), most);
+    let de = x * q * L::splat(EDGE);
+    let z = scale * reach;
+    // What underflows is no more than a part of what is rounded, but in z.
+    let underflow = reach.mul_add_freely(L::splat(error::UNDERFLOW), L::splat(error::UNDERFLOW));
+    let dz = z.mul_add_freely(L::splat(error::wide_gamma(14)), underflow);
+    // As `meet` computes it; an edge that was 0 is off by less than `de` there.
     let det =
-        E::edge(c.x, b.y, c.y, b.x) + E::edge(a.x, c.y, a.y, c.x) + E::edge(b.x, a.y, b.y, a.x);
-    // The exact one is less by the error of three edges and by roundings; `t_error` takes three more.
-    let rest = det.abs() * L::splat(1.0 - 4.0 * f32::EPSILON) - L::splat(6.0) * de;
-    let numerator = de * spread + dz * rest + underflow * (z + L::splat(1.0));
-    let rounding = L::splat(error::wide_gamma(2)) * t.abs();
-    error::bound(
-        numerator,
-        rest - L::splat(3.0) * de,
-        rounding,
-        x + y + (z + reach) + (moved_x + moved_y),
-    )
+        (E::edge(c.x, b.y, c.y, b.x) + E::edge(a.x, c.y, a.y, c.x) + E::edge(b.x, a.y, b.y, a.x))
+            .abs();
+    // E <= (de·(2·range + 3·dz) + dz·det) / (det - 12·de): of twelve, three are the edges' errors, two at most what the sum's
+    // roundings take, six those of `t_error`. The part of dz is taken out of the quotient.
+    let range = most_z - least_z;
+    let spread = (range + range).mul_add_freely(scale, L::splat(15.0) * dz);
+    error::bound(de * spread, det - L::splat(12.0) * de, dz, q + z)
 }
 
 /// A bound on the error of `t`, for edge functions that are within γ(2) of the two products' size.

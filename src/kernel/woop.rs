@@ -116,9 +116,9 @@ impl<const FUSED: bool> Kernel for Woop<FUSED> {
     fn t_error_bound<const W: usize, L: Lane<W>>(
         ray: &Prepared<L, L::Mask>,
         tri: &Corners<W>,
-        t: L,
+        _: L,
     ) -> L {
-        shear::t_error_bound::<W, L, Self>(ray, tri, t)
+        shear::t_error_bound::<W, L, Self>(ray, tri)
     }
 
     fn t_error(&self, ray: &Ray, corners: &[Vec3; 3], t: f32) -> f32 {

@@ -35,6 +35,7 @@ use crate::geometry::{Hit, Ray, Vec3};
 use crate::registry::Params;
 use crate::scene::Mesh;
 
+use super::prepared::PreparedRay;
 use super::shear::{self, Edge};
 use super::woop::Woop;
 use super::{Corners, Kernel, KernelEntry, LaneHit};
@@ -109,6 +110,16 @@ pub struct Prepared<L, M> {
     /// Its origin's z is NaN beyond [`RANGE`].
     frame: shear::Prepared<L, M>,
     rays: LaneRay<L>,
+}
+
+impl<const W: usize, L: Lane<W>> PreparedRay<W, L, Prepared<f32, bool>> for Prepared<L, L::Mask> {
+    #[inline(always)]
+    fn spread(one: &Prepared<f32, bool>) -> Self {
+        Self {
+            frame: shear::Prepared::spread(&one.frame),
+            rays: LaneRay::spread(&one.rays),
+        }
+    }
 }
 
 /// Coordinates up to this cannot overflow in the filter.

@@ -18,7 +18,7 @@ type Corners = [Vec3; 3];
 fn asked(ray: &Ray, corners: &Corners) -> Option<(Hit, bool)> {
     let packed = Exact.pack::<1>(|_| *corners);
     let prepared = Exact.prepare::<1, f32>(ray, &LaneRay::splat(ray));
-    let LaneHit { mask, t, u, v } = Exact.intersect::<1, f32>(&prepared, &packed)?;
+    let LaneHit { mask, t, u, v, .. } = Exact.intersect::<1, f32>(&prepared, &packed)?;
     let hit = Hit { t, u, v, prim: 0 };
     mask.then(|| (hit, Exact.within(&mesh(&[*corners]), ray, &hit)))
 }

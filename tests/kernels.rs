@@ -15,8 +15,8 @@ struct BothWidths<'a> {
 }
 
 impl BothWidths<'_> {
-    fn lane<const W: usize, L: Lane<W>>(
-        hit: Option<&LaneHit<W, L>>,
+    fn lane<const W: usize, L: Lane<W>, R>(
+        hit: Option<&LaneHit<W, L, R>>,
         lane: usize,
     ) -> Option<[u32; 3]> {
         let hit = hit.filter(|hit| hit.mask.bits() >> lane & 1 == 1)?;
@@ -80,7 +80,7 @@ impl KernelUser for OneHit<'_> {
         let packed = kernel.pack::<1>(|_| *self.corners);
         let ray = kernel.prepare::<1, f32>(self.ray, &LaneRay::splat(self.ray));
         let hit = kernel.intersect::<1, f32>(&ray, &packed)?;
-        let LaneHit { mask, t, u, v } = hit;
+        let LaneHit { mask, t, u, v, .. } = hit;
         mask.then(|| {
             let error = kernel.t_error(self.ray, self.corners, t);
             (Hit { t, u, v, prim: 0 }, error)

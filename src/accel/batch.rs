@@ -275,10 +275,10 @@ impl<'a, T: Items, K: Kernel, I: Isa, A: Answer, const OCCLUSION: bool> Rays<'a>
             if hit_by == 0 {
                 continue;
             }
-            let bounds = K::t_error_bound(&rays.prepared, &triangle, hit.t);
+            let bounds = K::t_error_bound(&rays.prepared, &triangle, &hit);
             for lane in Ones(hit_by) {
                 let visitor = &mut visitors[lane % SIXTEEN];
-                let takes = visitor.offer(prim, &hit, lane, || bounds.get(lane));
+                let takes = visitor.offer_met(hit.of_lane(lane, prim), || bounds.get(lane));
                 taken |= u32::from(takes) << lane;
             }
         }

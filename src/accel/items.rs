@@ -10,8 +10,9 @@
 
 use rayon::prelude::*;
 
+use crate::geometry::Hit;
 use crate::geometry::lanes::{InstructionSet, Isa, Lane, LaneMask, Ones, Portable, Task};
-use crate::kernel::{Kernel, LaneHit};
+use crate::kernel::Kernel;
 use crate::scene::Mesh;
 
 use super::packet::Packet;
@@ -132,8 +133,8 @@ impl Items for Singles {
             query.counter.test(prim, None, false);
             return false;
         };
-        let bound = || K::t_error_bound(&prepared, &packed.items[prim as usize], hit.t);
-        let taken = query.offer(prim, &hit, 0, bound);
+        let bound = || K::t_error_bound(&prepared, &packed.items[prim as usize], &hit);
+        let taken = query.offer(hit.of_lane(0, prim), bound);
         query.counter.test(prim, Some(hit.t), taken);
         OCCLUSION && taken
     }
@@ -197,16 +198,14 @@ impl Items for Blocks {
         let found = packed.kernel.intersect(&prepared, &block.triangles);
         if C::COUNTS {
             let mut finished = false;
-            let bound = |hit: &LaneHit<LANES, I::X8>, lane| {
-                K::t_error_bound(&prepared, &block.triangles, hit.t).get(lane)
-            };
             for lane in block.filled() {
                 let prim = block.prims[lane];
                 let hit = found
                     .as_ref()
                     .filter(|hit| hit.mask.bits() >> lane & 1 == 1);
                 let taken = hit.is_some_and(|hit| {
-                    !finished && query.offer(prim, hit, lane, || bound(hit, lane))
+                    let bound = || K::t_error_bound(&prepared, &block.triangles, hit).get(lane);
+                    !finished && query.offer(hit.of_lane(lane, prim), bound)
                 });
                 query
                     .counter
@@ -223,10 +222,15 @@ impl Items for Blocks {
         if met == 0 {
             return false;
         }
-        let bounds = K::t_error_bound(&prepared, &block.triangles, hit.t);
+        let bounds = K::t_error_bound(&prepared, &block.triangles, &hit);
+        let mut rows = [[0.0; LANES]; 4];
+        for (row, lanes) in rows.iter_mut().zip([hit.t, hit.u, hit.v, bounds]) {
+            lanes.write(row);
+        }
         for lane in Ones(met) {
-            let prim = block.prims[lane & (LANES - 1)];
-            if query.offer(prim, &hit, lane, || bounds.get(lane)) && OCCLUSION {
+            let lane = lane & (LANES - 1);
+            let ([t, u, v, bound], prim) = (rows.map(|row| row[lane]), block.prims[lane]);
+            if query.offer_met(Hit { t, u, v, prim }, || bound) && OCCLUSION {
                 return true;
             }
         }

@@ -4,7 +4,7 @@ use std::marker::PhantomData;
 
 use crate::geometry::lanes::{Isa, Lane, LaneRay, Task};
 use crate::geometry::{Hit, Ray};
-use crate::kernel::{Kernel, LaneHit, PreparedRay};
+use crate::kernel::{Kernel, PreparedRay};
 use crate::scene::Mesh;
 
 use super::items::Items;
@@ -96,22 +96,26 @@ impl<'a, T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool>
         self.limit = f32::NEG_INFINITY;
     }
 
-    /// Takes the hit of `lane` if it is nearer, or equally near with a lower index; for occlusion any within the interval.
-    /// Whether it was taken. `bound`: see [`take`].
+    /// Takes a hit on the ray's line if it lies within the interval, and is nearer than the best or equally near with a lower
+    /// index; for occlusion any. Whether it was taken. `bound`: see [`take`].
     #[inline(always)]
-    pub fn offer<const W: usize, L: Lane<W>>(
-        &mut self,
-        prim: u32,
-        hit: &LaneHit<W, L>,
-        lane: usize,
-        bound: impl FnOnce() -> f32,
-    ) -> bool {
-        let hit = Hit {
-            t: hit.t.get(lane),
-            u: hit.u.get(lane),
-            v: hit.v.get(lane),
-            prim,
-        };
+    pub fn offer(&mut self, hit: Hit, bound: impl FnOnce() -> f32) -> bool {
+        let Packed { kernel, mesh, .. } = self.packed;
+        kernel.within(mesh, self.ray, &hit) && self.prefer(hit, bound)
+    }
+
+    /// As [`Query::offer`], of a hit that lies within the interval as far as an `f32` tells.
+    #[inline(always)]
+    pub fn offer_met(&mut self, hit: Hit, bound: impl FnOnce() -> f32) -> bool {
+        if K::EXACT_T {
+            self.offer(hit, bound)
+        } else {
+            self.prefer(hit, bound)
+        }
+    }
+
+    #[inline(always)]
+    fn prefer(&mut self, hit: Hit, bound: impl FnOnce() -> f32) -> bool {
         let [from, to] = self.counts;
         if !(hit.t >= from && hit.t <= to) {
             return false;
@@ -122,7 +126,7 @@ impl<'a, T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool>
     }
 }
 
-/// Puts `hit` into `best` if it is to be preferred, and lowers `limit` accordingly; for occlusion to the least, since
+/// Puts `hit`, which lies within the interval, into `best` if it is to be preferred, and lowers `limit` accordingly; for occlusion to the least, since
 /// nothing more can change the answer. Whether it did. `bound` is one on the error of the hit's `t`; infinite where it is not
 /// known.
 #[inline(always)]
@@ -135,9 +139,6 @@ pub(super) fn take<K: Kernel, const OCCLUSION: bool>(
     best: &mut Hit,
     limit: &mut f32,
 ) -> bool {
-    if !kernel.within(mesh, ray, &hit) {
-        return false;
-    }
     if OCCLUSION {
         best.prim = hit.prim;
         *limit = f32::NEG_INFINITY;

@@ -69,6 +69,7 @@ fn normal_of(corners: &[Vec3; 3]) -> DVec3 {
 impl Kernel for Badouel {
     type Packed<const W: usize> = Packed<W>;
     type Prepared<const W: usize, L: Lane<W>> = LaneRay<L>;
+    type Rest<const W: usize, L: Lane<W>> = ();
 
     fn pack<const W: usize>(&self, corners: impl Fn(usize) -> [Vec3; 3]) -> Packed<W> {
         let normal = |lane| normal_of(&corners(lane)).normalize_or_zero();
@@ -136,7 +137,7 @@ impl Kernel for Badouel {
         if !mask.any() {
             return None;
         }
-        Some(LaneHit { mask, t, u, v })
+        Some(LaneHit::new(mask, t, u, v))
     }
 
     fn t_error(&self, ray: &Ray, corners: &[Vec3; 3], _: f32) -> f32 {

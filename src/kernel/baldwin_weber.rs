@@ -82,6 +82,7 @@ fn linear<const W: usize, L: Lane<W>>(row: &[[f32; W]; 4], v: LaneVec3<L>) -> L 
 impl Kernel for BaldwinWeber {
     type Packed<const W: usize> = Packed<W>;
     type Prepared<const W: usize, L: Lane<W>> = LaneRay<L>;
+    type Rest<const W: usize, L: Lane<W>> = ();
 
     fn pack<const W: usize>(&self, corners: impl Fn(usize) -> [Vec3; 3]) -> Packed<W> {
         let made: [_; W] = std::array::from_fn(|lane| transformation(corners(lane)));
@@ -121,7 +122,7 @@ impl Kernel for BaldwinWeber {
         if !mask.any() {
             return None;
         }
-        Some(LaneHit { mask, t, u, v })
+        Some(LaneHit::new(mask, t, u, v))
     }
 
     fn t_error(&self, ray: &Ray, corners: &[Vec3; 3], _: f32) -> f32 {

@@ -34,20 +34,38 @@ pub(super) const UNDERFLOW: f32 = 1e-30;
 /// Bounds that are computed in `f32` hold for numbers below this: three of them make no infinite product.
 pub(super) const LARGE: f32 = 1e12;
 
-/// The bound `numerator / denominator + rest` for a test whose numbers are at most `largest`; infinite where one of them is
-/// too large, or the denominator may be 0.
-#[inline(always)]
-pub(super) fn bound<const W: usize, L: Lane<W>>(
-    numerator: L,
-    denominator: L,
-    rest: L,
-    largest: L,
-) -> L {
-    let bound = numerator / denominator + rest;
-    let known = denominator.gt(L::splat(UNDERFLOW)) & largest.lt(L::splat(LARGE));
-    // What is no number is not less.
-    let infinite = L::splat(f32::INFINITY);
-    L::select(known & bound.lt(infinite), bound, infinite)
+/// Hits' quotients, as far as a bound on their error concerns them, with what they were multiplied by: the absolute value of
+/// one over the determinant.
+pub(super) struct QuickBound<L> {
+    /// One over the determinant.
+    pub inv_det: L,
+    /// The error of the determinant in units of itself.
+    pub det_error: L,
+    /// The error of the quotient, were the determinant exact.
+    pub error: L,
+    /// What is off besides.
+    pub rest: L,
+    /// The largest of the test's numbers, or more.
+    pub largest: L,
+}
+
+impl<L> QuickBound<L> {
+    /// The bound; infinite where a number is too large or the determinant may be 0. No division: that of the test will do,
+    /// and another would hold up what comes next.
+    #[inline(always)]
+    pub fn get<const W: usize>(self) -> L
+    where
+        L: Lane<W>,
+    {
+        // 1 / (1 - x) <= 1 + 2·x for x up to 1/2.
+        let wider = L::splat(1.0) + (self.det_error + self.det_error);
+        let bound = self.error.mul_add_freely(wider, self.rest);
+        // What is no number is not less.
+        let known = self.det_error.lt(L::splat(0.5))
+            & self.inv_det.lt(L::splat(1.0 / UNDERFLOW))
+            & self.largest.lt(L::splat(LARGE));
+        L::select(known, bound, L::splat(f32::INFINITY))
+    }
 }
 
 /// Sum of the absolute values of the six products in the determinant of `a`, `b` and `c`.
@@ -137,7 +155,7 @@ mod tests {
                 let Some(hit) = kernel.intersect(&prepared, &packed) else {
                     continue;
                 };
-                let quick = K::t_error_bound(&prepared, &packed, hit.t);
+                let quick = K::t_error_bound(&prepared, &packed, &hit);
                 let sure = kernel.t_error(&ray, &corners, hit.t);
                 assert!(quick >= sure, "{ray:?}, {corners:?}: {quick} < {sure}");
                 if quick.is_finite() {

@@ -73,6 +73,7 @@ fn normal<const W: usize, L: Lane<W>>(plane: &[[f32; W]; 4]) -> LaneVec3<L> {
 impl Kernel for HavelHerout {
     type Packed<const W: usize> = Packed<W>;
     type Prepared<const W: usize, L: Lane<W>> = LaneRay<L>;
+    type Rest<const W: usize, L: Lane<W>> = ();
 
     fn pack<const W: usize>(&self, corners: impl Fn(usize) -> [Vec3; 3]) -> Packed<W> {
         let made: [_; W] = std::array::from_fn(|lane| planes(corners(lane)));
@@ -116,12 +117,7 @@ impl Kernel for HavelHerout {
         if !mask.any() {
             return None;
         }
-        Some(LaneHit {
-            mask,
-            t: above / det,
-            u: u / most,
-            v: v / most,
-        })
+        Some(LaneHit::new(mask, above / det, u / most, v / most))
     }
 
     fn t_error(&self, ray: &Ray, corners: &[Vec3; 3], _: f32) -> f32 {

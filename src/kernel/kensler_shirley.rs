@@ -42,6 +42,7 @@ impl KenslerShirley {
 impl Kernel for KenslerShirley {
     type Packed<const W: usize> = Corners<W>;
     type Prepared<const W: usize, L: Lane<W>> = LaneRay<L>;
+    type Rest<const W: usize, L: Lane<W>> = ();
 
     fn pack<const W: usize>(&self, corners: impl Fn(usize) -> [Vec3; 3]) -> Corners<W> {
         Corners::with_area(corners)
@@ -76,12 +77,7 @@ impl Kernel for KenslerShirley {
         if !mask.any() {
             return None;
         }
-        Some(LaneHit {
-            mask,
-            t: normal.dot(s),
-            u,
-            v,
-        })
+        Some(LaneHit::new(mask, normal.dot(s), u, v))
     }
 
     fn t_error(&self, ray: &Ray, corners: &[Vec3; 3], _: f32) -> f32 {

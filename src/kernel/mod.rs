@@ -51,7 +51,7 @@ pub use woop::Woop;
 
 /// What a kernel answers for `W` triangles.
 #[derive(Debug, Clone, Copy)]
-pub struct LaneHit<const W: usize, L: Lane<W>> {
+pub struct LaneHit<const W: usize, L: Lane<W>, R = ()> {
     /// Which lanes are hit, whatever their `t`.
     pub mask: L::Mask,
     /// Ray parameter; meaningless where `mask` is false.
@@ -60,9 +60,36 @@ pub struct LaneHit<const W: usize, L: Lane<W>> {
     pub u: L,
     /// Barycentric weight of vertex 2; meaningless where `mask` is false.
     pub v: L,
+    /// See [`Kernel::Rest`].
+    rest: R,
 }
 
 impl<const W: usize, L: Lane<W>> LaneHit<W, L> {
+    /// Without a rest.
+    #[inline(always)]
+    fn new(mask: L::Mask, t: L, u: L, v: L) -> Self {
+        Self {
+            mask,
+            t,
+            u,
+            v,
+            rest: (),
+        }
+    }
+}
+
+impl<const W: usize, L: Lane<W>, R> LaneHit<W, L, R> {
+    /// That of one lane, on the triangle `prim`.
+    #[inline(always)]
+    pub(crate) fn of_lane(&self, lane: usize, prim: u32) -> Hit {
+        Hit {
+            t: self.t.get(lane),
+            u: self.u.get(lane),
+            v: self.v.get(lane),
+            prim,
+        }
+    }
+
     /// The lanes that are hit at a `t` within these intervals. Both ends belong to them, NaN to none.
     #[inline(always)]
     pub(crate) fn within(&self, t_min: L, t_max: L) -> L::Mask {
@@ -76,6 +103,8 @@ pub trait Kernel: Debug + Clone + Send + Sync + 'static {
     type Packed<const W: usize>: Debug + Clone + Send + Sync;
     /// A ray in the form that the test reads, made once a ray.
     type Prepared<const W: usize, L: Lane<W>>: PreparedRay<W, L, Self::Prepared<1, f32>>;
+    /// What [`Kernel::t_error_bound`] reads of the test, where it would take long to compute it again.
+    type Rest<const W: usize, L: Lane<W>>: Copy;
 
     /// Whether hits are compared more exactly than their `f32` `t` tells, by [`Kernel::within`] and [`Kernel::nearer`].
     const EXACT_T: bool = false;
@@ -114,7 +143,7 @@ pub trait Kernel: Debug + Clone + Send + Sync + 'static {
         &self,
         ray: &Self::Prepared<W, L>,
         triangles: &Self::Packed<W>,
-    ) -> Option<LaneHit<W, L>>;
+    ) -> Option<LaneHit<W, L, Self::Rest<W, L>>>;
 
     /// Which of many rays a triangle hits, a bit each, at a `t` within the intervals given: what [`Kernel::intersect`] tells of
     /// it. Here a kernel may do without branches: of a few triangles near a group of rays every second one is hit, and a
@@ -142,7 +171,7 @@ pub trait Kernel: Debug + Clone + Send + Sync + 'static {
     fn t_error_bound<const W: usize, L: Lane<W>>(
         _: &Self::Prepared<W, L>,
         _triangles: &Self::Packed<W>,
-        _t: L,
+        _hit: &LaneHit<W, L, Self::Rest<W, L>>,
     ) -> L {
         L::splat(f32::INFINITY)
     }

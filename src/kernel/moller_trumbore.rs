@@ -10,7 +10,7 @@ use crate::geometry::lanes::{Lane, LaneMask, LaneRay, LaneVec3};
 use crate::geometry::{DVec3, Ray, Vec3};
 use crate::registry::{ParamKind, ParamSpec, Params};
 
-use super::error::{self, HUGE, Quotient, TINY, gamma};
+use super::error::{self, HUGE, QuickBound, Quotient, TINY, gamma};
 use super::{Kernel, KernelEntry, LaneHit};
 
 /// The kernel `moller-trumbore`, or `moller-trumbore-eps`.
@@ -97,18 +97,14 @@ impl<const EPS: bool> MollerTrumbore<EPS> {
             !det.eq(zero)
         };
         let mask = sound & u.ge(zero) & v.ge(zero) & (u + v).le(one);
-        LaneHit {
-            mask,
-            t: e2.dot(q) * inv_det,
-            u,
-            v,
-        }
+        LaneHit::new(mask, e2.dot(q) * inv_det, u, v)
     }
 }
 
 impl<const EPS: bool> Kernel for MollerTrumbore<EPS> {
     type Packed<const W: usize> = Packed<W>;
     type Prepared<const W: usize, L: Lane<W>> = LaneRay<L>;
+    type Rest<const W: usize, L: Lane<W>> = ();
 
     #[inline(always)]
     fn pack<const W: usize>(&self, corners: impl Fn(usize) -> [Vec3; 3]) -> Packed<W> {
@@ -172,18 +168,29 @@ impl<const EPS: bool> Kernel for MollerTrumbore<EPS> {
     }
 
     #[inline(always)]
-    fn t_error_bound<const W: usize, L: Lane<W>>(ray: &LaneRay<L>, tri: &Packed<W>, t: L) -> L {
+    fn t_error_bound<const W: usize, L: Lane<W>>(
+        ray: &LaneRay<L>,
+        tri: &Packed<W>,
+        hit: &LaneHit<W, L>,
+    ) -> L {
         let (e1, e2) = (LaneVec3::load(&tri.e1), LaneVec3::load(&tri.e2));
         let from = ray.origin.minus(LaneVec3::load(&tri.v0));
         let (a, b, c, dir) = (size(from), size(e1), size(e2), size(ray.dir));
         // The permanents of `t_error` are at most products of sums.
-        let (edges, t) = (b * c, t.abs());
+        let (edges, t) = (b * c, hit.t.abs());
+        let inv_det = (L::splat(1.0) / e1.dot(ray.dir.cross(e2))).abs();
         let underflow = L::splat(error::UNDERFLOW);
         let det_error = L::splat(error::wide_gamma(7)) * dir * edges + underflow;
-        let numerator = L::splat(error::wide_gamma(8)) * a * edges + underflow + t * det_error;
-        let det = e1.dot(ray.dir.cross(e2)).abs() - det_error;
-        let rounding = L::splat(error::wide_gamma(4)) * t;
-        error::bound(numerator, det, rounding, a + b + (c + dir))
+        let numerator = L::splat(error::wide_gamma(8)) * a * edges + underflow;
+        let det_error = det_error * inv_det;
+        QuickBound {
+            inv_det,
+            det_error,
+            error: t.mul_add_freely(det_error, numerator * inv_det),
+            rest: L::splat(error::wide_gamma(4)) * t,
+            largest: a + b + (c + dir),
+        }
+        .get()
     }
 
     fn t_error(&self, ray: &Ray, corners: &[Vec3; 3], t: f32) -> f32 {

@@ -171,6 +171,7 @@ const MOST_LANES: usize = 16;
 impl Kernel for MollerTrumboreF64 {
     type Packed<const W: usize> = Corners<W>;
     type Prepared<const W: usize, L: Lane<W>> = LaneRay<L>;
+    type Rest<const W: usize, L: Lane<W>> = ();
 
     fn pack<const W: usize>(&self, corners: impl Fn(usize) -> [Vec3; 3]) -> Corners<W> {
         Corners::with_area(corners)
@@ -206,7 +207,7 @@ impl Kernel for MollerTrumboreF64 {
         let u = L::from_fn(|lane| us[lane & (MOST_LANES - 1)]);
         let v = L::from_fn(|lane| vs[lane & (MOST_LANES - 1)]);
         let mask = hit.gt(L::splat(0.0));
-        mask.any().then_some(LaneHit { mask, t, u, v })
+        mask.any().then_some(LaneHit::new(mask, t, u, v))
     }
 
     fn t_error(&self, ray: &Ray, corners: &[Vec3; 3], _: f32) -> f32 {

@@ -52,12 +52,20 @@ impl Edge for Pbrt {
     }
 }
 
+/// The greatest absolute value of three.
+#[inline(always)]
+fn largest<const W: usize, L: Lane<W>>([x, y, z]: [L; 3]) -> L {
+    LaneVec3 { x, y, z }.largest()
+}
+
 /// The bound on the error of `t` that pbrt computes beside each hit.
 #[inline(always)]
 fn error_of_t<const W: usize, L: Lane<W>>(sheared: &Sheared<L, L::Mask>) -> L {
     let [u, v, w] = sheared.edges;
-    let [x, y, z] = shear::farthest(&sheared.corners);
-    let e = LaneVec3 { x: u, y: v, z: w }.largest();
+    let [a, b, c] = sheared.corners;
+    let [x, y] = [[a.x, b.x, c.x], [a.y, b.y, c.y]].map(largest);
+    let z = largest(sheared.times());
+    let e = largest([u, v, w]);
     let (gamma2, gamma3) = (L::splat(gamma(2)), L::splat(gamma(3)));
     let gamma5 = L::splat(gamma(5));
     let dz = gamma3 * z;
@@ -69,6 +77,7 @@ fn error_of_t<const W: usize, L: Lane<W>>(sheared: &Sheared<L, L::Mask>) -> L {
 impl Kernel for Pbrt {
     type Packed<const W: usize> = Corners<W>;
     type Prepared<const W: usize, L: Lane<W>> = Prepared<L, L::Mask>;
+    type Rest<const W: usize, L: Lane<W>> = shear::Rest<L>;
 
     fn pack<const W: usize>(&self, corners: impl Fn(usize) -> [Vec3; 3]) -> Corners<W> {
         Corners::with_area_or_nan(corners)
@@ -93,7 +102,7 @@ impl Kernel for Pbrt {
         &self,
         ray: &Prepared<L, L::Mask>,
         tri: &Corners<W>,
-    ) -> Option<LaneHit<W, L>> {
+    ) -> Option<LaneHit<W, L, shear::Rest<L>>> {
         let sheared = shear::test::<W, L, Self>(ray, tri)?;
         let error = error_of_t(&sheared);
         let hit = sheared.hit();
@@ -108,10 +117,10 @@ impl Kernel for Pbrt {
     #[inline(always)]
     fn t_error_bound<const W: usize, L: Lane<W>>(
         ray: &Prepared<L, L::Mask>,
-        tri: &Corners<W>,
-        _: L,
+        _: &Corners<W>,
+        hit: &LaneHit<W, L, shear::Rest<L>>,
     ) -> L {
-        shear::t_error_bound::<W, L, Self>(ray, tri)
+        shear::t_error_bound(ray, hit)
     }
 
     fn t_error(&self, ray: &Ray, corners: &[Vec3; 3], t: f32) -> f32 {

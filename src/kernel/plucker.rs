@@ -51,6 +51,7 @@ fn side<const W: usize, L: Lane<W>>(dir: LaneVec3<L>, p: LaneVec3<L>, q: LaneVec
 impl Kernel for Plucker {
     type Packed<const W: usize> = Corners<W>;
     type Prepared<const W: usize, L: Lane<W>> = LaneRay<L>;
+    type Rest<const W: usize, L: Lane<W>> = ();
 
     fn pack<const W: usize>(&self, corners: impl Fn(usize) -> [Vec3; 3]) -> Corners<W> {
         Corners::with_area(corners)
@@ -94,12 +95,7 @@ impl Kernel for Plucker {
         if !mask.any() {
             return None;
         }
-        Some(LaneHit {
-            mask,
-            t: a.dot(normal) / slope,
-            u: u / sum,
-            v: v / sum,
-        })
+        Some(LaneHit::new(mask, a.dot(normal) / slope, u / sum, v / sum))
     }
 
     fn t_error(&self, ray: &Ray, corners: &[Vec3; 3], _: f32) -> f32 {

@@ -18,7 +18,7 @@
 use crate::geometry::lanes::{Lane, LaneMask, LaneRay, LaneVec3};
 use crate::geometry::{DVec3, Ray, Vec3};
 
-use super::error::{self, HUGE, TINY, gamma};
+use super::error::{self, HUGE, QuickBound, TINY, gamma};
 use super::prepared::{self, PreparedRay};
 use super::{Corners, LaneHit};
 
@@ -58,8 +58,17 @@ pub(super) struct Sheared<L, M> {
     pub edges: [L; 3],
     /// U + V + W.
     pub det: L,
-    /// The sheared corners, z scaled to be `t`.
+    /// The sheared corners.
     pub corners: [LaneVec3<L>; 3],
+    /// What makes a `t` of their z.
+    pub scale: L,
+}
+
+/// What a test leaves for [`t_error_bound`].
+#[derive(Debug, Clone, Copy)]
+pub struct Rest<L> {
+    corners: [LaneVec3<L>; 3],
+    inv_det: L,
 }
 
 /// The frame's axes for a direction: z is the axis of its largest component, the last of equals.
@@ -168,13 +177,6 @@ fn corner<const W: usize, L: Lane<W>>(
     }
 }
 
-/// Whether two of the three have opposite signs.
-#[inline(always)]
-fn apart<const W: usize, L: Lane<W>>(u: L, v: L, w: L) -> L::Mask {
-    let zero = L::splat(0.0);
-    (u.lt(zero) | v.lt(zero) | w.lt(zero)) & (u.gt(zero) | v.gt(zero) | w.gt(zero))
-}
-
 /// As [`meet`]; `None` if none is hit.
 #[inline(always)]
 pub(super) fn test<const W: usize, L: Lane<W>, E: Edge>(
@@ -196,94 +198,111 @@ pub(super) fn meet<const W: usize, L: Lane<W>, E: Edge>(
     let mut u = E::edge(c.x, b.y, c.y, b.x);
     let mut v = E::edge(a.x, c.y, a.y, c.x);
     let mut w = E::edge(b.x, a.y, b.y, a.x);
+    let [mut least, mut most] = extremes([u, v, w]);
     // Opposite signs are right, so a miss is sure; else a 0 may hide a sign.
-    let on_edge = (!apart::<W, L>(u, v, w) & (u.eq(zero) | v.eq(zero) | w.eq(zero))).bits();
+    let on_edge = (least.eq(zero) | most.eq(zero)).bits();
     if on_edge != 0 {
         u = edge_exact(on_edge, u, c.x, b.y, c.y, b.x);
         v = edge_exact(on_edge, v, a.x, c.y, a.y, c.x);
         w = edge_exact(on_edge, w, b.x, a.y, b.y, a.x);
+        [least, most] = extremes([u, v, w]);
     }
     let det = u + v + w;
-    // Not so written that NaN passes: it would only give a NaN t.
-    let mask = !apart::<W, L>(u, v, w) & (det.lt(zero) | det.gt(zero));
-    let z = ray.shear.z;
+    // NaN has no size.
+    let mask = !(least.lt(zero) & most.gt(zero)) & det.abs().gt(zero);
     Sheared {
         mask,
         edges: [u, v, w],
         det,
-        corners: [
-            LaneVec3 { z: z * a.z, ..a },
-            LaneVec3 { z: z * b.z, ..b },
-            LaneVec3 { z: z * c.z, ..c },
-        ],
+        corners: [a, b, c],
+        scale: ray.shear.z,
     }
 }
 
+/// The least and the greatest of three, where none is NaN.
+#[inline(always)]
+fn extremes<const W: usize, L: Lane<W>>([x, y, z]: [L; 3]) -> [L; 2] {
+    [x.min(y).min(z), x.max(y).max(z)]
+}
+
 impl<L: Copy, M> Sheared<L, M> {
-    /// The hits: `t` is the mean of the corners' z, weighted by the edge functions.
+    /// The `t` of each corner, were the ray to meet it.
     #[inline(always)]
-    pub fn hit<const W: usize>(self) -> LaneHit<W, L>
+    pub fn times<const W: usize>(&self) -> [L; 3]
     where
         L: Lane<W, Mask = M>,
     {
-        let ([u, v, w], [a, b, c]) = (self.edges, self.corners);
+        let [a, b, c] = self.corners;
+        [self.scale * a.z, self.scale * b.z, self.scale * c.z]
+    }
+
+    /// The hits: `t` is the mean of the corners', weighted by the edge functions.
+    #[inline(always)]
+    pub fn hit<const W: usize>(self) -> LaneHit<W, L, Rest<L>>
+    where
+        L: Lane<W, Mask = M>,
+    {
+        let ([u, v, w], [a, b, c]) = (self.edges, self.times());
         let inv_det = L::splat(1.0) / self.det;
         LaneHit {
             mask: self.mask,
-            t: (u * a.z + v * b.z + w * c.z) * inv_det,
+            t: (u * a + v * b + w * c) * inv_det,
             u: v * inv_det,
             v: w * inv_det,
+            rest: Rest {
+                corners: self.corners,
+                inv_det,
+            },
         }
     }
 }
 
-/// How far from the origin the corners lie along each axis: the greatest absolute value of three.
-#[inline(always)]
-pub(super) fn farthest<const W: usize, L: Lane<W>>([a, b, c]: &[LaneVec3<L>; 3]) -> [L; 3] {
-    let [x, y, z] = [[a.x, b.x, c.x], [a.y, b.y, c.y], [a.z, b.z, c.z]];
-    [largest(x), largest(y), largest(z)]
-}
-
-#[inline(always)]
-fn largest<const W: usize, L: Lane<W>>([x, y, z]: [L; 3]) -> L {
-    LaneVec3 { x, y, z }.largest()
-}
-
-/// A bound as that of [`t_error`], for hits of each lane: of few operations, since a hit costs no more than that and the test.
+/// A bound as that of [`t_error`], for hits of each lane: of few operations, since a test has not many more.
 ///
 /// With q = m + 2·r, m the greatest sheared |x| or |y| and r the greatest |z| before it is scaled: a shear is at most 1, so
 /// the corners before they were sheared are at most q away, and sheared ones are off by γ(5)·q. Then an edge function is off
-/// by 2·(γ(2)·X + 2·γ(5)·q)·X, where X = m + γ(5)·q. As the edge functions have one sign, `t` lies between the corners' z,
-/// and they are at most two ranges of z from it, together.
+/// by de = 2·(γ(2)·X + 2·γ(5)·q)·X, where X = m + γ(5)·q. As the edge functions have one sign, `t` lies between the corners' z,
+/// which are two ranges of z from it, together. So with dz, the error of a z and of the roundings that follow, that of `t` is
+///
+/// ```text
+/// (de·(2·range + 3·dz) + dz·det) / (det - 12·de)  =  de·(2·range + 15·dz) / (det - 12·de) + dz
+/// ```
+///
+/// Of twelve, three are the edges' errors, two at most what the roundings of their sum take, six those of [`t_error`].
 #[inline(always)]
-pub(super) fn t_error_bound<const W: usize, L: Lane<W>, E: Edge>(
+pub(super) fn t_error_bound<const W: usize, L: Lane<W>>(
     ray: &Prepared<L, L::Mask>,
-    tri: &Corners<W>,
+    hit: &LaneHit<W, L, Rest<L>>,
 ) -> L {
     const GAMMA5: f32 = error::wide_gamma(5);
     const EDGE: f32 = 4.0 * GAMMA5 + 2.0 * error::wide_gamma(2);
-    let [a, b, c] = sheared(ray, tri);
+    let [a, b, c] = hit.rest.corners;
     let across = |p: LaneVec3<L>| p.x.abs().max(p.y.abs());
     let most = across(a).max(across(b)).max(across(c));
-    let (least_z, most_z) = (a.z.min(b.z).min(c.z), a.z.max(b.z).max(c.z));
-    let scale = ray.shear.z.abs();
+    let [least_z, most_z] = extremes([a.z, b.z, c.z]);
     let reach = most_z.max(-least_z);
-    let q = (reach + reach) + most;
+    let q = reach + reach + most;
     let x = q.mul_add_freely(L::splat(GAMMA5), most);
-    let de = x * q * L::splat(EDGE);
+    let inv_det = hit.rest.inv_det.abs();
+    let de = x * q * L::splat(EDGE) * inv_det;
+    let scale = ray.shear.z.abs();
     let z = scale * reach;
-    // What underflows is no more than a part of what is rounded, but in z.
-    let underflow = reach.mul_add_freely(L::splat(error::UNDERFLOW), L::splat(error::UNDERFLOW));
-    let dz = z.mul_add_freely(L::splat(error::wide_gamma(14)), underflow);
-    // As `meet` computes it; an edge that was 0 is off by less than `de` there.
-    let det =
-        (E::edge(c.x, b.y, c.y, b.x) + E::edge(a.x, c.y, a.y, c.x) + E::edge(b.x, a.y, b.y, a.x))
-            .abs();
-    // E <= (de·(2·range + 3·dz) + dz·det) / (det - 12·de): of twelve, three are the edges' errors, two at most what the sum's
-    // roundings take, six those of `t_error`. The part of dz is taken out of the quotient.
-    let range = most_z - least_z;
-    let spread = (range + range).mul_add_freely(scale, L::splat(15.0) * dz);
-    error::bound(de * spread, det - L::splat(12.0) * de, dz, q + z)
+    // What underflows is a small part of what is rounded, but in z.
+    let underflow = L::splat(error::UNDERFLOW);
+    let dz = z.mul_add_freely(
+        L::splat(error::wide_gamma(14)),
+        reach.mul_add_freely(underflow, underflow),
+    );
+    let range = scale * (most_z - least_z);
+    let spread = dz.mul_add_freely(L::splat(15.0), range + range);
+    QuickBound {
+        inv_det,
+        det_error: L::splat(12.0) * de,
+        error: de * spread,
+        rest: dz,
+        largest: q + z,
+    }
+    .get()
 }
 
 /// A bound on the error of `t`, for edge functions that are within γ(2) of the two products' size.

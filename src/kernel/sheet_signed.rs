@@ -57,6 +57,7 @@ impl<const LOCAL: bool> SheetSigned<LOCAL> {
 impl<const LOCAL: bool> Kernel for SheetSigned<LOCAL> {
     type Packed<const W: usize> = Packed<W>;
     type Prepared<const W: usize, L: Lane<W>> = LaneRay<L>;
+    type Rest<const W: usize, L: Lane<W>> = ();
 
     fn pack<const W: usize>(&self, corners: impl Fn(usize) -> [Vec3; 3]) -> Packed<W> {
         sheet::pack(corners)
@@ -90,12 +91,7 @@ impl<const LOCAL: bool> Kernel for SheetSigned<LOCAL> {
         if !mask.any() {
             return None;
         }
-        Some(LaneHit {
-            mask,
-            t: crossing.t,
-            u: wb / sum,
-            v: wc / sum,
-        })
+        Some(LaneHit::new(mask, crossing.t, wb / sum, wc / sum))
     }
 
     fn t_error(&self, ray: &Ray, corners: &[Vec3; 3], t: f32) -> f32 {

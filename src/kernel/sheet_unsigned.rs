@@ -68,6 +68,7 @@ impl<const LOCAL: bool> SheetUnsigned<LOCAL> {
 impl<const LOCAL: bool> Kernel for SheetUnsigned<LOCAL> {
     type Packed<const W: usize> = Packed<W>;
     type Prepared<const W: usize, L: Lane<W>> = LaneRay<L>;
+    type Rest<const W: usize, L: Lane<W>> = ();
 
     fn pack<const W: usize>(&self, corners: impl Fn(usize) -> [Vec3; 3]) -> Packed<W> {
         sheet::pack(corners)
@@ -100,12 +101,12 @@ impl<const LOCAL: bool> Kernel for SheetUnsigned<LOCAL> {
         if !mask.any() {
             return None;
         }
-        Some(LaneHit {
+        Some(LaneHit::new(
             mask,
-            t: crossing.t,
-            u: wb / crossing.area,
-            v: wc / crossing.area,
-        })
+            crossing.t,
+            wb / crossing.area,
+            wc / crossing.area,
+        ))
     }
 
     fn t_error(&self, ray: &Ray, corners: &[Vec3; 3], t: f32) -> f32 {

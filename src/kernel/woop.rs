@@ -63,6 +63,7 @@ impl<const FUSED: bool> Edge for Woop<FUSED> {
 impl<const FUSED: bool> Kernel for Woop<FUSED> {
     type Packed<const W: usize> = Corners<W>;
     type Prepared<const W: usize, L: Lane<W>> = Prepared<L, L::Mask>;
+    type Rest<const W: usize, L: Lane<W>> = shear::Rest<L>;
 
     #[inline(always)]
     fn pack<const W: usize>(&self, corners: impl Fn(usize) -> [Vec3; 3]) -> Corners<W> {
@@ -97,7 +98,7 @@ impl<const FUSED: bool> Kernel for Woop<FUSED> {
         &self,
         ray: &Prepared<L, L::Mask>,
         tri: &Corners<W>,
-    ) -> Option<LaneHit<W, L>> {
+    ) -> Option<LaneHit<W, L, shear::Rest<L>>> {
         Some(shear::test::<W, L, Self>(ray, tri)?.hit())
     }
 
@@ -115,10 +116,10 @@ impl<const FUSED: bool> Kernel for Woop<FUSED> {
     #[inline(always)]
     fn t_error_bound<const W: usize, L: Lane<W>>(
         ray: &Prepared<L, L::Mask>,
-        tri: &Corners<W>,
-        _: L,
+        _: &Corners<W>,
+        hit: &LaneHit<W, L, shear::Rest<L>>,
     ) -> L {
-        shear::t_error_bound::<W, L, Self>(ray, tri)
+        shear::t_error_bound(ray, hit)
     }
 
     fn t_error(&self, ray: &Ray, corners: &[Vec3; 3], t: f32) -> f32 {

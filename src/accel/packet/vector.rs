@@ -55,7 +55,7 @@ impl<K: Kernel, I: Isa> Vector<K, I> {
         packed: &Packed<T, K>,
         rays: &[Ray],
         (prim, triangle): (u32, &K::Packed<1>),
-        hit: &LaneHit<1, I::Rays>,
+        hit: &LaneHit<1, I::Rays, K::Rest<1, I::Rays>>,
     ) -> bool {
         let (mut least, mut most) = (self.t_min, self.best.t.min(self.t_max));
         if K::EXACT_T {
@@ -77,7 +77,7 @@ impl<K: Kernel, I: Isa> Vector<K, I> {
                 self.offer_each(packed, rays, prim, hit, ties);
             }
             let nearer = near & hit.t.lt(self.best.t);
-            let mut error = K::t_error_bound(&self.prepared, triangle, hit.t);
+            let mut error = K::t_error_bound(&self.prepared, triangle, hit);
             let unknown = (nearer & error.eq(I::Rays::splat(f32::INFINITY))).bits();
             if unknown != 0 {
                 error = Self::t_errors(packed, rays, prim, hit, unknown, error);
@@ -102,7 +102,7 @@ impl<K: Kernel, I: Isa> Vector<K, I> {
         packed: &Packed<T, K>,
         rays: &[Ray],
         prim: u32,
-        hit: &LaneHit<1, I::Rays>,
+        hit: &LaneHit<1, I::Rays, K::Rest<1, I::Rays>>,
         unknown: u32,
         known: I::Rays,
     ) -> I::Rays {
@@ -129,7 +129,7 @@ impl<K: Kernel, I: Isa> Vector<K, I> {
         packed: &Packed<T, K>,
         rays: &[Ray],
         prim: u32,
-        hit: &LaneHit<1, I::Rays>,
+        hit: &LaneHit<1, I::Rays, K::Rest<1, I::Rays>>,
         met: u32,
     ) {
         let mut hits = self.hits();
@@ -137,12 +137,10 @@ impl<K: Kernel, I: Isa> Vector<K, I> {
         self.limit.write(&mut limits);
         for lane in Ones(met) {
             let lane = lane & (SIXTEEN - 1);
-            let hit = Hit {
-                t: hit.t.get(lane),
-                u: hit.u.get(lane),
-                v: hit.v.get(lane),
-                prim,
-            };
+            let hit = hit.of_lane(lane, prim);
+            if !packed.kernel.within(&packed.mesh, &rays[lane], &hit) {
+                continue;
+            }
             query::take::<K, false>(
                 &packed.kernel,
                 &packed.mesh,

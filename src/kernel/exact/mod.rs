@@ -237,17 +237,13 @@ fn settled<const W: usize, L: Lane<W>>(
         }
     }
     let [hit, t, u, v] = answers.map(|row| L::from_fn(|lane| row[lane & (MOST_LANES - 1)]));
-    any.then(|| LaneHit {
-        mask: hit.gt(L::splat(0.0)),
-        t,
-        u,
-        v,
-    })
+    any.then(|| LaneHit::new(hit.gt(L::splat(0.0)), t, u, v))
 }
 
 impl Kernel for Exact {
     type Packed<const W: usize> = Packed<W>;
     type Prepared<const W: usize, L: Lane<W>> = Prepared<L, L::Mask>;
+    type Rest<const W: usize, L: Lane<W>> = ();
 
     const EXACT_T: bool = true;
 
@@ -309,21 +305,21 @@ impl Kernel for Exact {
             let (origin, dir) = line::<W, L>(&ray.rays, lane);
             t[lane & (MOST_LANES - 1)] = crossing::time(origin, dir, &tri.triangle(lane));
         }
-        Some(LaneHit {
-            mask: filtered.hit & !filtered.miss,
-            t: L::from_fn(|lane| t[lane & (MOST_LANES - 1)]),
-            u: v * inverse,
-            v: w * inverse,
-        })
+        Some(LaneHit::new(
+            filtered.hit & !filtered.miss,
+            L::from_fn(|lane| t[lane & (MOST_LANES - 1)]),
+            v * inverse,
+            w * inverse,
+        ))
     }
 
     #[inline(always)]
     fn t_error_bound<const W: usize, L: Lane<W>>(
         _: &Prepared<L, L::Mask>,
         _: &Packed<W>,
-        t: L,
+        hit: &LaneHit<W, L>,
     ) -> L {
-        t.abs() * L::splat(3.0 * f32::EPSILON) + L::splat(8.0 * f32::from_bits(1))
+        hit.t.abs() * L::splat(3.0 * f32::EPSILON) + L::splat(8.0 * f32::from_bits(1))
     }
 
     fn t_error(&self, _: &Ray, _: &[Vec3; 3], t: f32) -> f32 {

@@ -126,9 +126,9 @@ impl<'a, T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool>
     }
 }
 
-/// Puts `hit`, which lies within the interval, into `best` if it is to be preferred, and lowers `limit` accordingly; for occlusion to the least, since
-/// nothing more can change the answer. Whether it did. `bound` is one on the error of the hit's `t`; infinite where it is not
-/// known.
+/// Puts `hit`, which lies within the interval, into `best` if it is to be preferred, and lowers `limit` accordingly; for
+/// occlusion to the least, since nothing more can change the answer. Whether it did. `bound` is one on the error of the hit's
+/// `t`; infinite where it is not known.
 #[inline(always)]
 pub(super) fn take<K: Kernel, const OCCLUSION: bool>(
     kernel: &K,

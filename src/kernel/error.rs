@@ -44,7 +44,7 @@ pub(super) struct QuickBound<L> {
     /// The error of the quotient, were the determinant exact.
     pub error: L,
     /// What is off besides.
-    pub rest: L,
+    pub besides: L,
     /// The largest of the test's numbers, or more.
     pub largest: L,
 }
@@ -59,7 +59,7 @@ impl<L> QuickBound<L> {
     {
         // 1 / (1 - x) <= 1 + 2·x for x up to 1/2.
         let wider = L::splat(1.0) + (self.det_error + self.det_error);
-        let bound = self.error.mul_add_freely(wider, self.rest);
+        let bound = self.error.mul_add_freely(wider, self.besides);
         // What is no number is not less.
         let known = self.det_error.lt(L::splat(0.5))
             & self.inv_det.lt(L::splat(1.0 / UNDERFLOW))

@@ -187,7 +187,7 @@ impl<const EPS: bool> Kernel for MollerTrumbore<EPS> {
             inv_det,
             det_error,
             error: t.mul_add_freely(det_error, numerator * inv_det),
-            rest: L::splat(error::wide_gamma(4)) * t,
+            besides: L::splat(error::wide_gamma(4)) * t,
             largest: a + b + (c + dir),
         }
         .get()

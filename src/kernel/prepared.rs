@@ -1,5 +1,6 @@
 //! Rays in the form that a test reads.
 
+use crate::geometry::Vec3;
 use crate::geometry::lanes::{Lane, LaneRay, LaneVec3};
 
 /// A ray prepared for lanes `L`, of which the form with one lane is `One`.
@@ -26,9 +27,5 @@ impl<const W: usize, L: Lane<W>> PreparedRay<W, L, LaneRay<f32>> for LaneRay<L> 
 /// A vector in every lane.
 #[inline(always)]
 pub(super) fn spread<const W: usize, L: Lane<W>>(v: LaneVec3<f32>) -> LaneVec3<L> {
-    LaneVec3 {
-        x: L::splat(v.x),
-        y: L::splat(v.y),
-        z: L::splat(v.z),
-    }
+    LaneVec3::splat(Vec3::new(v.x, v.y, v.z))
 }

@@ -299,7 +299,7 @@ pub(super) fn t_error_bound<const W: usize, L: Lane<W>>(
         inv_det,
         det_error: L::splat(12.0) * de,
         error: de * spread,
-        rest: dz,
+        besides: dz,
         largest: q + z,
     }
     .get()

@@ -80,7 +80,7 @@ impl Cells {
             usize::from(rows) * symbols.down,
         );
         let one_each = || resampled(image, usize::from(columns), usize::from(rows)).into_iter();
-        let cells = if symbols.is_ramp() || mode == ColorMode::None {
+        let cells = if symbols.drawn_in(mode).is_ramp() {
             one_each().map(|colour| ramp_cell(colour, mode)).collect()
         } else if mode == ColorMode::Ansi16 {
             one_each().map(shade_cell).collect()

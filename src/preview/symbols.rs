@@ -17,6 +17,8 @@ use ratatui::symbols::pixel::{OCTANTS, QUADRANTS, SEXTANTS};
 
 use crate::registry::ChoiceError;
 
+use super::ColorMode;
+
 /// A row of the symbol registry.
 #[derive(Debug, Clone, Copy)]
 pub struct Symbols {
@@ -87,6 +89,16 @@ impl Symbols {
     #[must_use]
     pub fn is_ramp(&self) -> bool {
         self.glyphs.is_empty()
+    }
+
+    /// What is drawn in `mode` where these are asked for: without colours characters, whatever the symbols.
+    #[must_use]
+    pub fn drawn_in(self, mode: ColorMode) -> Self {
+        if mode == ColorMode::None {
+            SYMBOLS[5]
+        } else {
+            self
+        }
     }
 
     /// One colour a cell.

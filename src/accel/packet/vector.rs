@@ -111,12 +111,8 @@ impl<K: Kernel, I: Isa> Vector<K, I> {
         hit.t.write(&mut hits);
         for (lane, error) in errors.iter_mut().enumerate() {
             if unknown >> lane & 1 == 1 {
-                let hit = Hit {
-                    t: hits[lane],
-                    prim,
-                    ..Hit::MISS
-                };
-                *error = query::t_error(&packed.kernel, &packed.mesh, &rays[lane], hit.prim, hit.t);
+                *error =
+                    query::t_error(&packed.kernel, &packed.mesh, &rays[lane], prim, hits[lane]);
             }
         }
         I::Rays::from_fn(|lane| errors[lane & (SIXTEEN - 1)])

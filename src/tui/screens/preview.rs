@@ -162,18 +162,14 @@ fn meaning(state: &State, frame: &mut Frame, area: Rect) {
     }
 }
 
-/// What was chosen, and the key that changes it. Without colours characters are drawn, whatever the symbols.
+/// What was chosen, and the key that changes it.
 fn choices(wish: &Wish, mode: ColorMode) -> Vec<(&'static str, String, &'static str)> {
     let n = match (wish.has_n(), wish.n) {
         (false, _) => "-".to_owned(),
         (true, NRule::Auto) => "auto".to_owned(),
         (true, NRule::Fixed(n)) => n.to_string(),
     };
-    let symbols = if mode == ColorMode::None {
-        "ascii"
-    } else {
-        wish.symbols.name
-    };
+    let symbols = wish.symbols.drawn_in(mode).name;
     vec![
         ("scene", wish.scene.clone(), " [ ]"),
         ("accelerator", accel_label(&wish.accel), " a"),

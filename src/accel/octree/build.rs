@@ -24,6 +24,9 @@ const MOST_GROWTH: f64 = 16.0;
 /// Divisions in a row that seem not to pay, in the hope for others below that do.
 const MOST_POOR: u32 = 1;
 
+/// A cell is divided along an axis where its edge is at least this part of its longest, so that cells become cubes.
+const LONG: f32 = 0.7;
+
 /// Up to this many parts a cell is not divided.
 const FEW: usize = 4;
 
@@ -53,7 +56,7 @@ struct Cell {
 
 /// The middle planes of a cell, and its eighths: bit `a` of an eighth's number tells its side along axis `a`.
 struct Middle {
-    /// `None` along an axis in which the cell is too flat to be divided.
+    /// `None` along an axis in which the cell is not divided.
     planes: [Option<Plane>; 3],
     eighths: [Aabb; 8],
     /// The chance that a line through the cell meets an eighth; 0 for those that there are not.
@@ -64,10 +67,12 @@ impl Middle {
     /// `None` where nothing divides the cell.
     fn of(cell: &Aabb) -> Option<Self> {
         let area = half_area(cell);
-        let middle = cell.centre();
+        let (middle, extent) = (cell.centre(), cell.extent());
+        let least = LONG * extent.max_element();
         let planes = [0, 1, 2].map(|axis: usize| {
             let place = middle[axis];
-            (cell.min[axis] < place && place < cell.max[axis]).then_some(Plane {
+            let is_long = extent[axis] >= least;
+            (is_long && cell.min[axis] < place && place < cell.max[axis]).then_some(Plane {
                 axis,
                 place,
                 planar_below: true,
@@ -272,4 +277,39 @@ fn planes(
     let above = planes(tree, middle, axis + 1, number | 1 << axis, eighth);
     tree.set(pair, [below, above]);
     plane_node(middle, plane, pair)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Vec3;
+
+    #[test]
+    fn flat_and_long_cells_are_divided_until_they_are_cubes() {
+        for (extent, axes) in [
+            ([1.0, 1.0, 1.0], vec![0, 1, 2]),
+            ([8.0, 1.0, 7.0], vec![0, 2]),
+            ([1.0, 5.0, 1.0], vec![1]),
+            ([0.0, 2.0, 1.5], vec![1, 2]),
+        ] {
+            let mut cell = Aabb {
+                min: Vec3::splat(-1.0),
+                max: Vec3::splat(-1.0) + Vec3::from(extent),
+            };
+            let divided = |cell: &Aabb| -> Vec<usize> {
+                let middle = Middle::of(cell).expect("divided");
+                let planes = middle.planes.iter().flatten();
+                planes.map(|plane| plane.axis).collect()
+            };
+            assert_eq!(divided(&cell), axes);
+            for _ in 0..3 {
+                cell = Middle::of(&cell).expect("divided").eighths[0];
+            }
+            let edges = extent.iter().filter(|edge| **edge > 0.0).count();
+            assert_eq!(divided(&cell).len(), edges);
+            let longest = cell.extent().max_element();
+            let is_even = |edge: &f32| *edge == 0.0 || *edge >= 0.5 * longest;
+            assert!(cell.extent().to_array().iter().all(is_even));
+        }
+    }
 }

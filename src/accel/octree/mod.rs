@@ -1,4 +1,5 @@
-//! A tree of cells with eight children each: a cell is divided in the middle of all three axes at once.
+//! A tree of cells with eight children each: a cell is divided in the middle of all three axes at once, a flat or a long one
+//! along its longest, until cells are cubes.
 //!
 //! ```text
 //!     +-----+-----+         a node is kept as seven planes of a `PlaneTree`, and counts as one step:
@@ -13,7 +14,10 @@
 //!
 //! A cell is divided until one block of triangles is left, or dividing it does not pay by the surface area heuristic; what
 //! did not pay in the end is taken back from the bottom up. Children are visited in the ray's order along each axis, which is
-//! an order from near to far. Along an axis in which a cell is flat it is not divided.
+//! an order from near to far.
+//!
+//! To halve flat cells along all axes, which keeps them flat, cuts walls that need no cut: on `city:300` rays took 1.9 (bounce)
+//! to 3.1 times as long (random) and the build 3 times, on `sphereflake:4` 1.2 to 1.6 and 1.5 times.
 //!
 //! **Source:** A. Glassner, "Space Subdivision for Fast Ray Tracing", 1984, for the tree; J. Revelles, C. Ureña and M.
 //! Lastra, "An Efficient Parametric Algorithm for Octree Traversal", WSCG 2000, for the order of children by the ray's

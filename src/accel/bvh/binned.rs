@@ -1,9 +1,9 @@
 //! The binned build: top down, each node split where a histogram of centroids says that it is cheapest, down to single
 //! references or to as many as a leaf may hold.
 //!
-//! A subtree of k references has at most 2k - 2 nodes below its root, so each has its room among the nodes before it is
-//! built; and exactly so many where a leaf holds one. A small subtree is one thread's, which puts its nodes side by side
-//! ([`Row`]), so that what leaves of several references leave over lies behind them.
+//! How many nodes there will be is not known before, since leaves may hold several references. A small subtree is one
+//! thread's, which puts its nodes side by side ([`Row`]); in the end the rows are put behind each other ([`Limb`]). Where
+//! each reference goes is known at each split.
 //!
 //! Every decision depends only on the references of the node, and chunks that threads share are cut and joined by
 //! counts, so the tree is the same whatever the number of threads.
@@ -44,29 +44,27 @@ pub(super) fn references_before(mesh: &Mesh, room: usize) -> Vec<Reference> {
 pub(super) fn build(mut references: Vec<Reference>, most: usize) -> BinaryTree {
     let count = references.len();
     let mut spare = pages::filled(count, Reference::NONE);
-    grow(count, most, |node, place| {
+    grow(count, most, |place| {
         let task = Task::new(&mut references, &mut spare, count);
-        split(node, task, place, Loops::best());
+        split(task, place, Loops::best())
     })
 }
 
-/// A tree over `count` references: `fill` gets the root and where what is below it goes.
-pub(super) fn grow(count: usize, most: usize, fill: impl FnOnce(&mut Node, Place)) -> BinaryTree {
+/// A tree over `count` references: `make` makes its root and what is below that.
+pub(super) fn grow(count: usize, most: usize, make: impl FnOnce(Place) -> Limb) -> BinaryTree {
     if count == 0 {
         return BinaryTree::EMPTY;
     }
-    let mut nodes = pages::filled(2 * count - 1, Node::NONE);
     let mut references = pages::filled(count, 0);
-    let (root, below) = nodes.split_at_mut(1);
-    let place = Place {
+    let limb = make(Place {
         prims: &mut references,
         first_reference: 0,
-        nodes: below,
-        first_node: 1,
         depth: 0,
         most,
-    };
-    fill(&mut root[0], place);
+    });
+    let mut nodes = pages::with_capacity(limb.len());
+    nodes.push(Node::NONE);
+    limb.lay(0, &mut nodes);
     BinaryTree { nodes, references }
 }
 
@@ -75,56 +73,93 @@ pub(super) struct Place<'a> {
     /// Triangle indices of its leaves.
     pub prims: &'a mut [u32],
     pub first_reference: u32,
-    /// Room for the nodes below its root.
-    pub nodes: &'a mut [Node],
-    pub first_node: u32,
     pub depth: usize,
     /// Most references of a leaf.
     pub most: usize,
 }
 
 impl<'a> Place<'a> {
-    /// The children of a node that gives `count` references to the first of them, and the places of both subtrees.
-    pub fn split(self, count: usize) -> (&'a mut [Node], [Place<'a>; 2]) {
-        let (children, below) = self.nodes.split_at_mut(2);
-        let (a_nodes, b_nodes) = below.split_at_mut(2 * count - 2);
+    /// The places of both children of a node that gives `count` references to the first of them.
+    pub fn split(self, count: usize) -> [Place<'a>; 2] {
         let (a_prims, b_prims) = self.prims.split_at_mut(count);
-        let first_node = self.first_node + 2;
-        let part = |prims, first_reference, nodes, first_node| Place {
+        let part = |prims, first_reference| Place {
             prims,
             first_reference,
-            nodes,
-            first_node,
             depth: self.depth + 1,
             most: self.most,
         };
-        let a = part(a_prims, self.first_reference, a_nodes, first_node);
-        let b = part(
-            b_prims,
-            self.first_reference + count as u32,
-            b_nodes,
-            first_node + 2 * count as u32 - 2,
-        );
-        (children, [a, b])
+        [
+            part(a_prims, self.first_reference),
+            part(b_prims, self.first_reference + count as u32),
+        ]
     }
 }
 
-/// A place that one thread fills, one node after another, so that no room is left between them.
+/// A subtree whose nodes do not lie side by side yet.
+pub(super) enum Limb {
+    /// Made by one thread: the root, and what is below it, which counts from the begin of `below`.
+    Row {
+        root: Node,
+        below: Vec<Node>,
+    },
+    Fork {
+        bounds: Aabb,
+        sides: Box<[Limb; 2]>,
+    },
+}
+
+impl Limb {
+    /// Nodes, with the root.
+    fn len(&self) -> usize {
+        match self {
+            Limb::Row { below, .. } => 1 + below.len(),
+            Limb::Fork { sides, .. } => 1 + sides[0].len() + sides[1].len(),
+        }
+    }
+
+    /// Puts the root at `at` and what is below it behind all of `nodes`.
+    fn lay(self, at: usize, nodes: &mut Vec<Node>) {
+        let first = nodes.len();
+        match self {
+            Limb::Row { root, below } => {
+                let by = first as u32;
+                nodes[at] = root.moved(by);
+                nodes.extend(below.iter().map(|node| node.moved(by)));
+            }
+            Limb::Fork { bounds, sides } => {
+                nodes[at] = Node::interior(bounds, first as u32);
+                nodes.extend([Node::NONE; 2]);
+                let [a, b] = *sides;
+                a.lay(first, nodes);
+                b.lay(first + 1, nodes);
+            }
+        }
+    }
+}
+
+/// A place that one thread fills, one node after another.
 pub(super) struct Row<'a> {
     place: Place<'a>,
-    /// Nodes and references that are taken.
-    nodes: usize,
+    nodes: Vec<Node>,
+    /// References that are taken.
     references: usize,
     loops: Loops,
 }
 
 impl<'a> Row<'a> {
-    fn new(place: Place<'a>, loops: Loops) -> Self {
-        Self {
+    /// What is made of `task` at `place`.
+    fn limb(task: Task, place: Place<'a>, loops: Loops) -> Limb {
+        let depth = place.depth;
+        let mut row = Self {
+            nodes: Vec::with_capacity(2 * task.len() / place.most),
             place,
             loops,
-            nodes: 0,
             references: 0,
+        };
+        let root = row.subtree(task, depth);
+        Limb::Row {
+            root,
+            below: row.nodes,
         }
     }
 
@@ -153,11 +188,11 @@ impl<'a> Row<'a> {
         bounds: Aabb,
         children: impl FnOnce(&mut Self) -> [Node; 2],
     ) -> Node {
-        let first = self.nodes;
-        self.nodes += 2;
+        let first = self.nodes.len();
+        self.nodes.extend([Node::NONE; 2]);
         let children = children(self);
-        self.place.nodes[first..first + 2].copy_from_slice(&children);
-        Node::interior(bounds, self.place.first_node + first as u32)
+        self.nodes[first..first + 2].copy_from_slice(&children);
+        Node::interior(bounds, first as u32)
     }
 
     /// The root of a subtree over what `task` holds, at `depth`, after everything below it.
@@ -192,21 +227,22 @@ fn sides(task: Task, depth: usize, loops: Loops) -> [Task; 2] {
     }
 }
 
-/// Fills `node` and everything below it.
-pub(super) fn split(node: &mut Node, task: Task, place: Place, loops: Loops) {
-    let depth = place.depth;
+/// The tree over what `task` holds.
+pub(super) fn split(task: Task, place: Place, loops: Loops) -> Limb {
     if task.len() < PARALLEL {
-        *node = Row::new(place, loops).subtree(task, depth);
-        return;
+        return Row::limb(task, place, loops);
     }
-    *node = Node::interior(task.extent.bounds.aabb(), place.first_node);
-    let [a_task, b_task] = sides(task, depth, loops);
-    let (children, [a_place, b_place]) = place.split(a_task.len());
-    let (a, b) = children.split_at_mut(1);
-    rayon::join(
-        || split(&mut a[0], a_task, a_place, loops),
-        || split(&mut b[0], b_task, b_place, loops),
+    let bounds = task.extent.bounds.aabb();
+    let [a_task, b_task] = sides(task, place.depth, loops);
+    let [a_place, b_place] = place.split(a_task.len());
+    let (a, b) = rayon::join(
+        || split(a_task, a_place, loops),
+        || split(b_task, b_place, loops),
     );
+    Limb::Fork {
+        bounds,
+        sides: Box::new([a, b]),
+    }
 }
 
 #[cfg(test)]
@@ -223,9 +259,9 @@ mod tests {
             validate::validate(&tree, &mesh).expect("valid");
             let leaves = || tree.nodes.iter().filter(|node| node.is_leaf());
             assert!(leaves().all(|leaf| leaf.count as usize <= most));
-            for node in tree.nodes.iter().filter(|node| **node != Node::NONE) {
+            for node in tree.nodes.iter().filter(|node| !node.is_leaf()) {
                 let children = &tree.nodes[node.first as usize..];
-                let is_lowest = !node.is_leaf() && children[..2].iter().all(Node::is_leaf);
+                let is_lowest = children[..2].iter().all(Node::is_leaf);
                 // What fits into a leaf is not divided.
                 assert!(!is_lowest || (children[0].count + children[1].count) as usize > most);
             }

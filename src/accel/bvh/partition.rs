@@ -5,8 +5,8 @@
 //!   | . . . . . . . . . . |  -->  | first side . . > < . second side |     then the two change roles
 //! ```
 //!
-//! The first side is moved to the begin of the spare room and the second to its end, without a branch that could be
-//! mispredicted. Where room is left between them, for references that spatial splits add, both sides get a share.
+//! The first side is moved to the begin of the spare room and the second to its end, each in its order. Where room is left
+//! between them, for references that spatial splits add, both sides get a share.
 
 use std::ops::Range;
 
@@ -112,24 +112,26 @@ impl<'a> Task<'a> {
     /// Both sides of an object split.
     pub fn divided(self, loops: Loops, choice: &Choice) -> [Self; 2] {
         let Choice { split, grid, parts } = choice;
-        let (references, to) = (&self.references[self.filled.clone()], &mut *self.spare);
+        let count = self.len() - split.count;
+        let room = self.spare.len() - count;
+        let (first, second) = self.spare.split_at_mut(room);
+        let task = Partition {
+            references: &self.references[self.filled.clone()],
+            sides: [&mut first[..split.count], second],
+            grid,
+            axis: split.axis,
+            bin: split.bin,
+        };
         let centroids = if parts.is_empty() {
-            (loops.partition)(Partition {
-                references,
-                to,
-                grid,
-                axis: split.axis,
-                bin: split.bin,
-            })
+            (loops.partition)(task)
         } else {
-            partition_shared(references, to, grid, split, parts)
+            partition_shared(loops, task, parts)
         };
         let extents = [0, 1].map(|side| Extent {
             bounds: split.sides[side],
             centroids: centroids[side],
         });
-        let counts = [split.count, self.len() - split.count];
-        self.moved(counts, extents)
+        self.moved([split.count, count], extents)
     }
 
     /// The references and the spare room, for a division that moves the first side to the begin of the spare room and the
@@ -191,7 +193,7 @@ impl<'a> Task<'a> {
     }
 }
 
-/// Moves `references` to the begin and the end of `to`, and returns the boxes of the centroids of both sides.
+/// Moves `references` to both sides, in their order, and returns the boxes of the centroids of each.
 #[inline(always)]
 pub(super) fn partition(task: Partition) -> [Bounds; 2] {
     match task.axis {
@@ -205,21 +207,25 @@ pub(super) fn partition(task: Partition) -> [Bounds; 2] {
 fn partition_along<const AXIS: usize>(task: Partition) -> [Bounds; 2] {
     let Partition {
         references,
-        to,
+        sides: [first, second],
         grid,
         bin,
         ..
     } = task;
-    let (mut first, mut second) = (0, to.len());
+    let mut beyond_count = 0;
     let mut centroids = Centroids::EMPTY;
-    for reference in references {
+    for (i, reference) in references.iter().enumerate() {
         let centroid = reference.centroid();
         let beyond = grid.is_beyond::<AXIS>(centroid, bin);
         centroids.add(centroid, beyond);
-        let is_beyond = beyond.bitmask() as usize & 1;
-        second -= is_beyond;
-        to[first + (second - first) * is_beyond] = *reference;
-        first += is_beyond ^ 1;
+        // To both, without a branch that could be mispredicted; what is on the wrong side is overwritten by the next.
+        if let Some(slot) = first.get_mut(i - beyond_count) {
+            *slot = *reference;
+        }
+        if let Some(slot) = second.get_mut(beyond_count) {
+            *slot = *reference;
+        }
+        beyond_count += beyond.bitmask() as usize & 1;
     }
     centroids.0
 }
@@ -242,58 +248,34 @@ impl Centroids {
         second.min = second.min.min(centroid + b);
         second.max = second.max.max(centroid - b);
     }
-
-    fn union(self, other: Self) -> Self {
-        let [a, b] = self.0;
-        let [c, d] = other.0;
-        Self([a.union(c), b.union(d)])
-    }
 }
 
 /// As [`partition`], chunk by chunk; `parts` are their histograms, which say where each chunk's references go.
-fn partition_shared(
-    references: &[Reference],
-    to: &mut [Reference],
-    grid: &Grid,
-    split: &Split,
-    parts: &[Histogram],
-) -> [Bounds; 2] {
-    let (mut first, mut second) = to.split_at_mut(to.len() - (references.len() - split.count));
+fn partition_shared(loops: Loops, task: Partition, parts: &[Histogram]) -> [Bounds; 2] {
+    let Partition {
+        references,
+        sides: [mut first, mut second],
+        grid,
+        axis,
+        bin,
+    } = task;
     let mut chunks = Vec::with_capacity(parts.len());
-    for (chunk, part) in references.chunks(CHUNK).zip(parts) {
-        let below = part.below(split.axis, split.bin);
+    for (references, part) in references.chunks(CHUNK).zip(parts) {
+        let below = part.below(axis, bin);
         let (a, a_rest) = std::mem::take(&mut first).split_at_mut(below);
-        let (b, b_rest) = std::mem::take(&mut second).split_at_mut(chunk.len() - below);
+        let (b, b_rest) = std::mem::take(&mut second).split_at_mut(references.len() - below);
         (first, second) = (a_rest, b_rest);
-        chunks.push((chunk, [a, b]));
+        chunks.push(Partition {
+            references,
+            sides: [a, b],
+            grid,
+            axis,
+            bin,
+        });
     }
-    let joined = chunks
+    let union = |[a, b]: [Bounds; 2], [c, d]: [Bounds; 2]| [a.union(c), b.union(d)];
+    chunks
         .into_par_iter()
-        .map(|(chunk, mut sides)| match split.axis {
-            0 => deal::<0>(chunk, &mut sides, grid, split.bin),
-            1 => deal::<1>(chunk, &mut sides, grid, split.bin),
-            _ => deal::<2>(chunk, &mut sides, grid, split.bin),
-        })
-        .reduce(|| Centroids::EMPTY, Centroids::union);
-    joined.0
-}
-
-/// Moves a chunk to its room on both sides.
-fn deal<const AXIS: usize>(
-    chunk: &[Reference],
-    sides: &mut [&mut [Reference]; 2],
-    grid: &Grid,
-    bin: usize,
-) -> Centroids {
-    let mut centroids = Centroids::EMPTY;
-    let mut filled = [0; 2];
-    for reference in chunk {
-        let centroid = reference.centroid();
-        let beyond = grid.is_beyond::<AXIS>(centroid, bin);
-        centroids.add(centroid, beyond);
-        let side = beyond.bitmask() as usize & 1;
-        sides[side][filled[side]] = *reference;
-        filled[side] += 1;
-    }
-    centroids
+        .map(loops.partition)
+        .reduce(|| [Bounds::EMPTY; 2], union)
 }

@@ -21,12 +21,12 @@ use crate::scene::Mesh;
 use super::super::clip::clipped_halves;
 use super::super::pages;
 use super::super::sah::half_area;
-use super::binned::{self, PARALLEL, Place};
+use super::binned::{self, Limb, PARALLEL, Place};
 use super::chop::{self, Plane, Search};
 use super::loops::Loops;
 use super::partition::Task;
 use super::reference::{Bounds, Extent, Reference};
-use super::{BinaryTree, Node, small};
+use super::{BinaryTree, small};
 
 /// Where one reference may be added to more than so many, little is to be gained.
 const CROWDED: usize = 64;
@@ -80,9 +80,7 @@ pub(super) fn build(mesh: &Mesh, effort: Effort, most: usize) -> BinaryTree {
         loops: Loops::best(),
     };
     let top = builder.top(Task::new(&mut references, &mut spare, count), 0);
-    binned::grow(top.count(), most, |node, place| {
-        top.fill(node, place, builder.loops);
-    })
+    binned::grow(top.count(), most, |place| top.limb(place, builder.loops))
 }
 
 /// The top of a tree.
@@ -105,24 +103,26 @@ impl Top<'_> {
         }
     }
 
-    fn fill(self, node: &mut Node, place: Place, loops: Loops) {
-        let (bounds, count, sides) = match self {
-            Top::Rest(task) => return binned::split(node, task, place, loops),
+    /// The tree below, complete.
+    fn limb(self, place: Place, loops: Loops) -> Limb {
+        let (bounds, count, [first, second]) = match self {
+            Top::Rest(task) => return binned::split(task, place, loops),
             Top::Split {
                 bounds,
                 count,
                 sides,
-            } => (bounds, count, sides),
+            } => (bounds.aabb(), count, *sides),
         };
-        *node = Node::interior(bounds.aabb(), place.first_node);
-        let [first, second] = *sides;
-        let (children, [a_place, b_place]) = place.split(first.count());
-        let (a, b) = children.split_at_mut(1);
-        join(
+        let [a_place, b_place] = place.split(first.count());
+        let (a, b) = join(
             count,
-            || first.fill(&mut a[0], a_place, loops),
-            || second.fill(&mut b[0], b_place, loops),
+            || first.limb(a_place, loops),
+            || second.limb(b_place, loops),
         );
+        Limb::Fork {
+            bounds,
+            sides: Box::new([a, b]),
+        }
     }
 }
 

@@ -45,6 +45,15 @@ impl Node {
         self.count != 0
     }
 
+    /// The same where its children lie so many nodes further back.
+    pub fn moved(&self, nodes: u32) -> Self {
+        let by = if self.is_leaf() { 0 } else { nodes };
+        Self {
+            first: self.first + by,
+            ..*self
+        }
+    }
+
     pub fn bounds(&self) -> Aabb {
         Aabb {
             min: self.corners[0].into(),
@@ -61,8 +70,7 @@ impl Node {
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::accel) struct BinaryTree {
     /// The root is first; children lie side by side, behind their parent. Behind the children of a node lies what is below
-    /// the first, then what is below the second. Nothing is between, but in a tree that is [`grouped`]: there rooms
-    /// that were left over hold [`Node::NONE`]. Empty for an empty mesh.
+    /// the first, then what is below the second. Nothing is between. Empty for an empty mesh.
     pub nodes: Vec<Node>,
     /// Triangle indices in the order of the leaves.
     pub references: Vec<u32>,

@@ -24,7 +24,7 @@ pub(super) fn depth(nodes: &[Node]) -> u32 {
     deepest
 }
 
-/// Checks that every node but rooms left over is reached once, in order and within the stack's depth, that boxes contain
+/// Checks that every node is reached once, in order and within the stack's depth, that boxes contain
 /// those below them, and that the boxes of the leaves that list a triangle together contain it.
 pub(super) fn validate(tree: &BinaryTree, mesh: &Mesh) -> Result<(), String> {
     if mesh.is_empty() != tree.nodes.is_empty() {
@@ -99,8 +99,7 @@ fn references(tree: &BinaryTree, mesh: &Mesh) -> Result<Vec<(u32, usize)>, Strin
             references.push((prim, index));
         }
     }
-    let is_lost = |(reached, node): (&bool, &Node)| !reached && *node != Node::NONE;
-    match reached.iter().zip(&tree.nodes).position(is_lost) {
+    match reached.iter().position(|reached| !reached) {
         Some(index) => Err(format!("node {index} is never reached")),
         None => Ok(references),
     }

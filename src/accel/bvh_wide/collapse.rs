@@ -87,11 +87,11 @@ struct Collapse<'a> {
 }
 
 impl BvhWide {
-    /// Collapses `tree`, whose leaves hold at most as many references as a block has lanes each; also returns the triangle of every lane of
-    /// every block.
+    /// Collapses `tree`, whose leaves hold at most as many references as a block has lanes each; also returns the triangle
+    /// of every lane of every block.
     pub(super) fn collapse(tree: &BinaryTree, mesh: &Mesh) -> (Self, Vec<u32>) {
         let mut part = Part {
-            nodes: pages::with_capacity(tree.nodes.len() / 12),
+            nodes: pages::with_capacity(tree.nodes.len() / 8),
             blocks: Filling::with_capacity(tree.references.len()),
             ..Part::default()
         };
@@ -264,8 +264,7 @@ mod tests {
 
     #[test]
     fn a_few_triangles_far_away_are_a_leaf_beside_all_others() {
-        // The first splits put a group beside thousands: room for nodes that a group does not need lies before those
-        // of its neighbour.
+        // The first splits put a group beside thousands.
         for many in [20, 5000, 20_000] {
             for few in [1, 3, 8] {
                 for far in [-1e3, 1e3] {

@@ -31,7 +31,7 @@ pub(super) const MOST_BLOCKS: usize = 4;
 pub(super) const WIDTH: usize = 8;
 
 /// Subtrees with fewer binary nodes are one thread's work.
-pub(super) const APART: usize = 1 << 14;
+pub(super) const APART: usize = 1 << 12;
 
 /// A subtree of the binary tree: its root, and where what is below it ends; see [`BinaryTree::nodes`].
 #[derive(Debug, Clone, Copy)]
@@ -64,7 +64,7 @@ impl Subtree {
         [half(first, middle), half(first + 1, self.end)]
     }
 
-    /// Nodes below its root, and rooms that were left over among them.
+    /// Nodes below its root.
     pub fn below(self, nodes: &[Node]) -> usize {
         let root = &nodes[self.root];
         if root.is_leaf() {

@@ -111,6 +111,11 @@ pub(super) fn fill(slots: &mut Vec<u32>, prims: &[u32]) {
     }
 }
 
+/// So many blocks before one is packed the corners of its triangles are fetched, and what names these as long before that.
+/// Triangles that are neighbours in space are often not so in memory: without it packing took a third of the build of
+/// `bvh-wide` over `soup:1000000`, and a tenth over other meshes.
+const AHEAD: usize = 4;
+
 impl Items for Singles {
     const LANES: bool = false;
     type Item<K: Kernel> = K::Packed<1>;
@@ -177,9 +182,17 @@ impl Items for Blocks {
     fn pack<K: Kernel>(kernel: &K, mesh: &Mesh, slots: &[u32]) -> Vec<Self::Item<K>> {
         let mut blocks = pages::with_capacity(slots.len() / LANES);
         let (whole, _) = slots.as_chunks::<LANES>();
-        blocks.par_extend(whole.par_iter().map(|prims| Block {
-            triangles: kernel.pack(|lane| mesh.corners(prims[lane])),
-            prims: *prims,
+        blocks.par_extend(whole.par_iter().enumerate().map(|(i, prims)| {
+            for prim in whole.get(i + 2 * AHEAD).into_iter().flatten() {
+                mesh.prefetch_triangle(*prim);
+            }
+            for prim in whole.get(i + AHEAD).into_iter().flatten() {
+                mesh.prefetch_corners(*prim);
+            }
+            Block {
+                triangles: kernel.pack(|lane| mesh.corners(prims[lane])),
+                prims: *prims,
+            }
         }));
         blocks
     }

@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use crate::geometry::lanes::prefetch;
 use crate::geometry::{Aabb, Vec3};
 
 /// Triangles over shared vertices. All coordinates are finite and all indices in range.
@@ -85,6 +86,20 @@ impl Mesh {
     #[inline(always)]
     pub fn corners(&self, prim: u32) -> [Vec3; 3] {
         self.triangles[prim as usize].map(|v| self.vertices[v as usize])
+    }
+
+    /// Fetches what [`Mesh::corners`] reads first of a triangle whose corners are asked for later.
+    #[inline(always)]
+    pub fn prefetch_triangle(&self, prim: u32) {
+        prefetch(&raw const self.triangles[prim as usize], 1);
+    }
+
+    /// Fetches the corners of a triangle that are asked for soon.
+    #[inline(always)]
+    pub fn prefetch_corners(&self, prim: u32) {
+        for vertex in self.triangles[prim as usize] {
+            prefetch(&raw const self.vertices[vertex as usize], 1);
+        }
     }
 
     /// The box of a triangle.

@@ -104,7 +104,15 @@ fn part(
     places: &[u32],
 ) -> Part {
     let mut part = Part::default();
-    for &place in places {
+    // What the next cells read is fetched meanwhile: triangles that share a cell are often not neighbours in memory.
+    let listed = |place: Option<&u32>| place.map_or(&[][..], |place| lists.of(*place as usize));
+    for (i, &place) in places.iter().enumerate() {
+        for prim in listed(places.get(i + 2)) {
+            mesh.prefetch_triangle(*prim);
+        }
+        for prim in listed(places.get(i + 1)) {
+            mesh.prefetch_corners(*prim);
+        }
         let prims = lists.of(place as usize);
         let mut inner = Inner {
             first: part.cells,

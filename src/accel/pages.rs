@@ -20,6 +20,14 @@ pub(super) fn filled<T: Copy + Send + Sync>(count: usize, value: T) -> Vec<T> {
     filled
 }
 
+/// As many zeros, in such a room. None is written: fresh pages are zero.
+pub(super) fn zeroed(count: usize) -> Vec<u8> {
+    let zeros = vec![0; count];
+    #[cfg(target_os = "linux")]
+    advise(zeros.as_ptr() as usize, count);
+    zeros
+}
+
 /// Asks for huge pages in the whole pages between `start` and `start + bytes`.
 #[cfg(target_os = "linux")]
 #[expect(
@@ -54,6 +62,7 @@ mod tests {
             assert!(room.capacity() >= count);
             room.extend(0..count as u32);
             assert!(room.iter().copied().eq(0..count as u32));
+            assert_eq!(zeroed(count), vec![0; count]);
             assert!(filled(count, 7).iter().eq(std::iter::repeat_n(&7, count)));
         }
     }

@@ -143,10 +143,25 @@ impl Lattice {
 
     /// All cells whose shell the closed box [`min`, `max`], within the grid, touches.
     pub fn block(&self, min: DVec3, max: DVec3) -> Block {
+        let clear = |axis: usize, x: f64| self.clear(axis, x);
         Block {
-            first: std::array::from_fn(|a| self.first(a, min[a])),
-            last: std::array::from_fn(|a| self.last(a, max[a])),
+            first: std::array::from_fn(|a| {
+                clear(a, min[a]).unwrap_or_else(|| self.first(a, min[a]))
+            }),
+            last: std::array::from_fn(|a| clear(a, max[a]).unwrap_or_else(|| self.last(a, max[a]))),
         }
+    }
+
+    /// The only cell of `axis` whose shell reaches `x`, where division tells: where `x` lies so far from planes that no
+    /// rounding matters. What the quotient errs in cells is below 2⁻⁴⁰, and below the pad, which covers what planes err.
+    #[inline(always)]
+    fn clear(&self, axis: usize, x: f64) -> Option<u32> {
+        const ROUNDING: f64 = 1.0 / (1_u64 << 30) as f64;
+        let place = (x - self.lo[axis]) * self.inv_size[axis];
+        let cell = place as u32;
+        let rim = 2.0 * self.pad * self.inv_size[axis] + ROUNDING;
+        let within = place - f64::from(cell);
+        (within > rim && within < 1.0 - rim && cell < self.dims[axis]).then_some(cell)
     }
 
     /// The first cell of `axis` whose upper plane, padded, reaches up to `x`.
@@ -222,6 +237,30 @@ mod tests {
             [8, 1, 1],
             "a thin axis keeps a cell"
         );
+    }
+
+    #[test]
+    fn what_division_tells_is_what_planes_decide() {
+        for n in [1, 3, 7, 100, 1024] {
+            let lattice = cube(n);
+            let mut told = 0;
+            for i in 0..4000_u32 {
+                // Everywhere, and near planes.
+                let plane = lattice.plane(0, i % (n + 1));
+                let near = plane + lattice.pad * (f64::from(i) / 400.0 - 5.0);
+                for x in [near, -1.0 + f64::from(i) * 1.1 / 4000.0] {
+                    if let Some(cell) = lattice.clear(0, x) {
+                        assert_eq!(
+                            [cell; 2],
+                            [lattice.first(0, x), lattice.last(0, x)],
+                            "{n}, {x}"
+                        );
+                        told += 1;
+                    }
+                }
+            }
+            assert!(told > 3900, "{n}: {told}");
+        }
     }
 
     #[test]

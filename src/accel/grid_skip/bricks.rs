@@ -8,10 +8,13 @@
 //! ```
 
 /// Cells along an edge of a brick, as a power of two.
-const EDGE: u32 = 2;
+const EDGE_LOG2: u32 = 2;
+
+/// Cells along an edge of a brick.
+pub(super) const EDGE: usize = 1 << EDGE_LOG2;
 
 /// Cells of a brick.
-pub(super) const BRICK: usize = 1 << (3 * EDGE);
+pub(super) const BRICK: usize = 1 << (3 * EDGE_LOG2);
 
 /// The bricks over cells; those at the far sides may reach beyond.
 #[derive(Debug, Clone, Copy)]
@@ -27,7 +30,7 @@ pub(super) struct Bricks {
 impl Bricks {
     /// Over so many cells along each axis.
     pub fn new(dims: [u32; 3]) -> Self {
-        let bricks = dims.map(|n| n.div_ceil(1 << EDGE));
+        let bricks = dims.map(|n| n.div_ceil(1 << EDGE_LOG2));
         let brick = BRICK as u32;
         let step = [
             brick,
@@ -35,7 +38,7 @@ impl Bricks {
             brick.wrapping_mul(bricks[0]).wrapping_mul(bricks[1]),
         ];
         let more = std::array::from_fn(|a| {
-            let within = 1 << (EDGE * (a as u32 + 1));
+            let within = 1 << (EDGE_LOG2 * (a as u32 + 1));
             step[a].wrapping_sub(within) as i32
         });
         Self {
@@ -59,7 +62,7 @@ impl Bricks {
     /// What number `i` on `axis` adds to the place of a cell.
     #[inline(always)]
     pub fn along(&self, axis: usize, i: i32) -> i32 {
-        (i << (EDGE * axis as u32)) + (i >> EDGE).wrapping_mul(self.more[axis])
+        (i << (EDGE_LOG2 * axis as u32)) + (i >> EDGE_LOG2).wrapping_mul(self.more[axis])
     }
 
     /// The place of a cell.
@@ -72,21 +75,28 @@ impl Bricks {
         let (brick, within) = ((place / BRICK) as u32, place % BRICK);
         let [bx, by, _] = self.across;
         let at = [brick % bx, brick / bx % by, brick / bx / by];
-        let cell =
-            std::array::from_fn(|a| (at[a] << EDGE) + (within >> (EDGE * a as u32) & 3) as u32);
+        let cell = std::array::from_fn(|a| {
+            (at[a] << EDGE_LOG2) + (within >> (EDGE_LOG2 * a as u32) & 3) as u32
+        });
         (0..3).all(|a| cell[a] < self.dims[a]).then_some(cell)
     }
 
-    /// For each stretch of up to four cells of a row along x: the number of its first cell, its place, and how many.
-    pub fn row(&self, y: u32, z: u32) -> impl Iterator<Item = (usize, usize, usize)> {
-        let (dims, first) = (self.dims, self.place([0, y, z]));
-        (0..dims[0].div_ceil(1 << EDGE) as usize).map(move |brick| {
-            let x = brick << EDGE;
-            (
-                x,
-                first + brick * BRICK,
-                (dims[0] as usize - x).min(1 << EDGE),
-            )
+    /// For each four cells of a row along x, of which the last may lie beyond: the number of the first, and its place.
+    pub fn row(&self, y: u32, z: u32) -> impl Iterator<Item = (usize, usize)> {
+        let first = self.place([0, y, z]);
+        (0..self.across[0] as usize).map(move |brick| (brick << EDGE_LOG2, first + brick * BRICK))
+    }
+
+    /// The rows of four cells in a brick: for each the bit of its first, that cell, and how many are not beyond.
+    pub fn rows(&self, brick: usize) -> impl Iterator<Item = (usize, [u32; 3], u32)> {
+        let dims = self.dims;
+        let first = self.cell(brick * BRICK).unwrap_or(dims);
+        let edge = EDGE as u32;
+        let rows = (0..edge).flat_map(move |z| (0..edge).map(move |y| [0, y, z]));
+        rows.enumerate().filter_map(move |(i, row)| {
+            let cell: [u32; 3] = std::array::from_fn(|a| first[a] + row[a]);
+            let count = (dims[0] - first[0]).min(edge);
+            (cell[1] < dims[1] && cell[2] < dims[2]).then_some((i << EDGE_LOG2, cell, count))
         })
     }
 }
@@ -102,8 +112,8 @@ mod tests {
             let mut met = vec![false; bricks.len()];
             for (y, z) in (0..dims[2]).flat_map(|z| (0..dims[1]).map(move |y| (y, z))) {
                 let mut xs = 0..dims[0];
-                for (x, place, count) in bricks.row(y, z) {
-                    for k in 0..count {
+                for (x, place) in bricks.row(y, z) {
+                    for k in 0..4.min(dims[0] as usize - x) {
                         assert_eq!(xs.next(), Some((x + k) as u32));
                         let cell = [(x + k) as u32, y, z];
                         assert_eq!(bricks.place(cell), place + k);
@@ -115,6 +125,17 @@ mod tests {
             }
             for (place, met) in met.into_iter().enumerate() {
                 assert_eq!(bricks.cell(place).is_some(), met, "{dims:?}, {place}");
+            }
+            for brick in 0..bricks.len() / BRICK {
+                let mut cells = vec![None; BRICK];
+                for (bit, cell, count) in bricks.rows(brick) {
+                    for k in 0..count {
+                        cells[bit + k as usize] = Some([cell[0] + k, cell[1], cell[2]]);
+                    }
+                }
+                for (k, cell) in cells.into_iter().enumerate() {
+                    assert_eq!(cell, bricks.cell(brick * BRICK + k));
+                }
             }
         }
     }

@@ -12,6 +12,7 @@ use rayon::prelude::*;
 
 use super::super::pages;
 use super::super::share::Span;
+use super::bricks::BRICK;
 
 /// The cells whose bits are here.
 #[derive(Debug, Clone, Copy, Default)]
@@ -21,8 +22,8 @@ struct Word {
     before: u32,
 }
 
-/// Cells of a word.
-const CELLS: usize = u64::BITS as usize;
+/// Cells of a word, which are those of a brick.
+const CELLS: usize = BRICK;
 
 /// The listed cells, and the span of each.
 #[derive(Debug)]
@@ -32,15 +33,15 @@ pub(super) struct Cells {
 }
 
 impl Cells {
-    /// Of `count` cells those that are `listed`, still without spans.
-    pub fn new(count: usize, listed: impl Fn(usize) -> bool + Sync) -> Self {
-        let mut words = pages::with_capacity(count.div_ceil(CELLS));
-        words.resize(count.div_ceil(CELLS), Word::default());
-        words.par_iter_mut().enumerate().for_each(|(place, word)| {
-            for cell in place * CELLS..count.min((place + 1) * CELLS) {
-                word.listed |= u64::from(listed(cell)) << (cell % CELLS);
-            }
-        });
+    /// The cells of so many words of which `listed` gives the bits, still without spans.
+    pub fn new(words: usize, listed: impl Fn(usize) -> u64 + Sync) -> Self {
+        let word = |word| Word {
+            listed: listed(word),
+            before: 0,
+        };
+        let count = words;
+        let mut words = pages::with_capacity(count);
+        words.par_extend((0..count).into_par_iter().map(word));
         let mut before = 0;
         for word in &mut words {
             word.before = before;
@@ -62,6 +63,12 @@ impl Cells {
     #[inline(always)]
     pub fn span(&self, cell: usize) -> Span {
         self.spans[self.words[cell / CELLS].rank(cell)]
+    }
+
+    /// Which of the four cells from this one on list triangles, a bit each.
+    #[inline(always)]
+    pub fn four(&self, cell: usize) -> u32 {
+        (self.words[cell / CELLS].listed >> (cell % CELLS)) as u32 & 15
     }
 
     /// Calls `found` with every cell in `range` that lists triangles.
@@ -110,7 +117,11 @@ mod tests {
     fn listed_cells_are_numbered_in_order_and_the_others_are_none() {
         let listed = |cell: usize| cell % 7 == 3 || (64..140).contains(&cell);
         for count in [0, 1, 63, 64, 65, 128, 1000] {
-            let cells = Cells::new(count, listed);
+            let bits = |word: usize| {
+                let cells = word * CELLS..count.min((word + 1) * CELLS);
+                cells.fold(0, |bits, c| bits | u64::from(listed(c)) << (c % CELLS))
+            };
+            let cells = Cells::new(count.div_ceil(CELLS), bits);
             let right: Vec<usize> = (0..count).filter(|c| listed(*c)).collect();
             let mut found = Vec::new();
             cells.each_listed(0..count, |cell| found.push(cell));
@@ -118,6 +129,9 @@ mod tests {
             assert_eq!(cells.spans.len(), right.len());
             for cell in 0..count {
                 assert_eq!(cells.rank(cell), right.iter().position(|c| *c == cell));
+                let four = (0..4).filter(|k| cell % 4 == 0 && listed(cell + k) && cell + k < count);
+                let four = four.fold(0, |bits, k| bits | 1 << k);
+                assert!(cell % 4 != 0 || cells.four(cell) == four);
             }
             for (start, end) in [(3, 64), (64, 90), (65, 66), (70, 300)] {
                 let mut found = Vec::new();

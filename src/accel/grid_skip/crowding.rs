@@ -21,7 +21,7 @@ const CROWD: f64 = 16.0;
 
 /// Triangles in a cell, in the mean over the surface, that are few enough where there were too many. `sphereflake:4`, which
 /// has 26, gets cells less than half as large, and its primary rays are twice as fast, bounce rays half as fast again.
-const FEW: f64 = 4.0;
+const FEW: f64 = 5.0;
 
 /// How much n may rise between two looks.
 const STEP: f64 = 2.0;

@@ -15,8 +15,10 @@
 
 use rayon::prelude::*;
 
+use crate::geometry::lanes::{InstructionSet, Isa, Task};
+
 use super::super::pages;
-use super::bricks::Bricks;
+use super::bricks::{Bricks, EDGE};
 use super::cells::Cells;
 
 /// Directions: bit a is set where a ray goes down axis a.
@@ -28,60 +30,89 @@ const FAR: u8 = u8::MAX;
 /// The distances of all cells, direction after direction. 0: the cell lists triangles.
 pub(super) fn distances(cells: &Cells, bricks: &Bricks, dims: [u32; 3]) -> Vec<u8> {
     let count = bricks.len();
-    let mut all = pages::with_capacity(OCTANTS * count);
-    all.resize(OCTANTS * count, 0);
+    let mut all = pages::zeroed(OCTANTS * count);
+    let set = InstructionSet::best();
     all.par_chunks_mut(count.max(1))
         .enumerate()
-        .for_each(|(octant, distances)| fill(octant, distances, cells, (bricks, dims)));
+        .for_each(|(octant, distances)| {
+            set.run(Fill {
+                octant,
+                distances,
+                cells,
+                bricks,
+                dims,
+            });
+        });
     all
 }
 
 /// Fills in the distances of one direction, from the far end of the grid to the near one.
-fn fill(octant: usize, distances: &mut [u8], cells: &Cells, (bricks, dims): (&Bricks, [u32; 3])) {
-    let [nx, ny, nz] = dims.map(|n| n as usize);
-    let down = |axis: usize| octant >> axis & 1 == 1;
-    // Rows run with the ray: place c is cell c, or cell nx - 1 - c. Behind the last row and column lies the outside.
-    let outside = vec![FAR; nx];
-    let mut behind = vec![FAR; nx * ny];
-    let mut ahead = vec![FAR; nx * ny];
-    for z in (0..nz).map(|k| if down(2) { k } else { nz - 1 - k }) {
-        for k in 0..ny {
-            let y = if down(1) { k } else { ny - 1 - k };
-            let (before, row) = ahead.split_at_mut(k * nx);
-            let row = &mut row[..nx];
-            let in_plane = if k > 0 {
-                &before[(k - 1) * nx..]
-            } else {
-                &outside
-            };
-            let across = if k > 0 {
-                &behind[(k - 1) * nx..k * nx]
-            } else {
-                &outside
-            };
-            nearest(row, in_plane, &behind[k * nx..(k + 1) * nx], across);
-            for (x, place, count) in bricks.row(y as u32, z as u32) {
-                cells.each_listed(place..place + count, |cell| {
-                    let x = x + cell - place;
-                    row[if down(0) { nx - 1 - x } else { x }] = 0;
-                });
-            }
-            run(row);
-            for (x, place, count) in bricks.row(y as u32, z as u32) {
-                let target = &mut distances[place..place + count];
-                if down(0) {
-                    target.copy_from_slice(&row[nx - x - count..nx - x]);
-                    target.reverse();
+struct Fill<'a> {
+    octant: usize,
+    distances: &'a mut [u8],
+    cells: &'a Cells,
+    bricks: &'a Bricks,
+    dims: [u32; 3],
+}
+
+impl Task for Fill<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<I: Isa>(self) {
+        let [nx, ny, nz] = self.dims.map(|n| n as usize);
+        // Rows have whole bricks. What lies beyond the grid is never listed, and nothing is listed behind it.
+        let nx = nx.next_multiple_of(EDGE);
+        let down = |axis: usize| self.octant >> axis & 1 == 1;
+        // Rows run with the ray: place c is cell c, or cell nx - 1 - c. Behind the last row and column lies the outside.
+        let outside = vec![FAR; nx];
+        let mut behind = vec![FAR; nx * ny];
+        let mut ahead = vec![FAR; nx * ny];
+        for z in (0..nz).map(|k| if down(2) { k } else { nz - 1 - k }) {
+            for k in 0..ny {
+                let y = if down(1) { k } else { ny - 1 - k };
+                let (before, row) = ahead.split_at_mut(k * nx);
+                let row = &mut row[..nx];
+                let in_plane = if k > 0 {
+                    &before[(k - 1) * nx..]
                 } else {
-                    target.copy_from_slice(&row[x..x + count]);
+                    &outside
+                };
+                let across = if k > 0 {
+                    &behind[(k - 1) * nx..k * nx]
+                } else {
+                    &outside
+                };
+                nearest(row, in_plane, &behind[k * nx..(k + 1) * nx], across);
+                let place = |x: usize| if down(0) { nx - EDGE - x } else { x };
+                let turned = |mut four: [u8; EDGE]| {
+                    if down(0) {
+                        four.reverse();
+                    }
+                    four
+                };
+                for (x, cell) in self.bricks.row(y as u32, z as u32) {
+                    let four = self.cells.four(cell);
+                    if four != 0 {
+                        let empty = turned(std::array::from_fn(|k| (!four >> k & 1) as u8));
+                        let distances = row[place(x)..].iter_mut();
+                        distances.zip(empty).for_each(|(d, empty)| *d *= empty);
+                    }
+                }
+                run(row);
+                let (fours, _) = row.as_chunks();
+                for (x, cell) in self.bricks.row(y as u32, z as u32) {
+                    let four = turned(fours[place(x) / EDGE]);
+                    self.distances[cell..cell + EDGE].copy_from_slice(&four);
                 }
             }
+            std::mem::swap(&mut behind, &mut ahead);
         }
-        std::mem::swap(&mut behind, &mut ahead);
     }
 }
 
 /// One more than the least distance among the neighbours of each cell in three rows: beside it and one on.
+#[inline(always)]
 fn nearest(row: &mut [u8], a: &[u8], b: &[u8], c: &[u8]) {
     for (((d, a), b), c) in row.iter_mut().zip(a).zip(b).zip(c) {
         *d = (*a).min(*b).min(*c);
@@ -95,6 +126,7 @@ fn nearest(row: &mut [u8], a: &[u8], b: &[u8], c: &[u8]) {
 }
 
 /// Lets each cell be no farther than the ones on from it in its row are, plus the way there.
+#[inline(always)]
 fn run(row: &mut [u8]) {
     let mut step = 1;
     while step < row.len() && step < usize::from(FAR) {
@@ -108,6 +140,7 @@ fn run(row: &mut [u8]) {
 #[cfg(test)]
 mod tests {
     use super::super::super::testbed::Dice;
+    use super::super::bricks::BRICK;
     use super::*;
 
     /// The largest empty cube ahead of a cell, by looking at all of it.
@@ -142,7 +175,12 @@ mod tests {
                 let bricks = Bricks::new(dims);
                 let number = |[x, y, z]: [u32; 3]| ((z * dims[1] + y) * dims[0] + x) as usize;
                 let lists = |place| bricks.cell(place).is_some_and(|cell| listed[number(cell)]);
-                let all = distances(&Cells::new(bricks.len(), lists), &bricks, dims);
+                let bits = |brick: usize| {
+                    let cells = (0..BRICK).filter(|k| lists(brick * BRICK + k));
+                    cells.fold(0, |bits, k| bits | 1 << k)
+                };
+                let cells = Cells::new(bricks.len() / BRICK, bits);
+                let all = distances(&cells, &bricks, dims);
                 for octant in 0..OCTANTS {
                     for k in 0..count {
                         let cell = [k % dims[0], k / dims[0] % dims[1], k / dims[0] / dims[1]];

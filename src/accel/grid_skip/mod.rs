@@ -116,11 +116,17 @@ impl GridSkip {
             return Err(refuse(limit.saturating_add(1), less()));
         };
         let bricks = Bricks::new(lattice.dims);
-        let listed = |place: usize| {
-            let cell = bricks.cell(place).map(|cell| lattice.index(cell) as usize);
-            cell.is_some_and(|cell| lists.offsets[cell] != lists.offsets[cell + 1])
+        let listed = |brick: usize| {
+            let row = |(bit, cell, count): (usize, [u32; 3], u32)| {
+                let first = lattice.index(cell) as usize;
+                let offsets = lists.offsets[first..=first + count as usize].windows(2);
+                offsets.enumerate().fold(0, |bits, (k, offsets)| {
+                    bits | u64::from(offsets[0] != offsets[1]) << (bit + k)
+                })
+            };
+            bricks.rows(brick).map(row).fold(0, |bits, row| bits | row)
         };
-        let mut cells = Cells::new(bricks.len(), listed);
+        let mut cells = Cells::new(bricks.len() / bricks::BRICK, listed);
         let shared = share(&lattice, &bricks, &lists, &mut cells);
         drop(lists);
         let bytes = predict::bytes(lattice.dims, 0) + cells.bytes() + shared.bytes();

@@ -17,8 +17,9 @@ use super::subset::{measured, stratified};
 use super::{NRule, PerRay, Plan, RunConfig, RunRecord, StopReason, sampling};
 
 /// A build shorter than this many milliseconds is made three times, so that its median is of a warm allocator: a first build
-/// takes up to twice as long, and beside smaller ones would pass for how costs grow, …
-const CHEAP_MS: f64 = 500.0;
+/// takes up to twice as long (`grid-skip` on `sphereflake:4` 850 ms, where the median of three is 344), and beside smaller ones
+/// would pass for how costs grow, …
+const CHEAP_MS: f64 = 1000.0;
 /// … and one shorter than this five times.
 const VERY_CHEAP_MS: f64 = 10.0;
 

@@ -33,13 +33,12 @@ pub(super) struct Cells {
 }
 
 impl Cells {
-    /// The cells of so many words of which `listed` gives the bits, still without spans.
-    pub fn new(words: usize, listed: impl Fn(usize) -> u64 + Sync) -> Self {
-        let word = |word| Word {
-            listed: listed(word),
+    /// The cells of `count` bricks, of each of which `listed` gives the bits, still without spans.
+    pub fn new(count: usize, listed: impl Fn(usize) -> u64 + Sync) -> Self {
+        let word = |brick| Word {
+            listed: listed(brick),
             before: 0,
         };
-        let count = words;
         let mut words = pages::with_capacity(count);
         words.par_extend((0..count).into_par_iter().map(word));
         let mut before = 0;

@@ -26,7 +26,7 @@ use crate::scene::Mesh;
 use super::batch::run_apart;
 use super::bvh::{Build, grouped};
 use super::packets;
-use super::slab::{Scene, WideCorners};
+use super::slab::{NO_BOXES, Scene, WideCorners, box_in, put_box};
 use super::traced::finish_in_order;
 use super::{AcceleratorEntry, Blocks, Rays, Structure, StructureStats, Visitor};
 
@@ -155,26 +155,19 @@ impl BvhWide {
 impl Node {
     /// A node without children.
     const EMPTY: Self = Self {
-        boxes: [[[f32::INFINITY; 8], [f32::NEG_INFINITY; 8]]; 3],
+        boxes: NO_BOXES,
         children: [Child::NONE.0; 8],
     };
 
     /// Puts `child` into a lane.
     fn set(&mut self, lane: usize, child: Child, bounds: &Aabb) {
-        for axis in 0..3 {
-            self.boxes[axis][0][lane] = bounds.min[axis];
-            self.boxes[axis][1][lane] = bounds.max[axis];
-        }
+        put_box(&mut self.boxes, lane, bounds);
         self.children[lane] = child.0;
     }
 
     fn children(&self) -> impl Iterator<Item = (Child, Aabb)> {
         (0..8).map(|lane| {
-            let corner = |side: usize| [0, 1, 2].map(|axis| self.boxes[axis][side][lane]);
-            let bounds = Aabb {
-                min: corner(0).into(),
-                max: corner(1).into(),
-            };
+            let bounds = box_in(&self.boxes, lane);
             (Child(self.children[lane]), bounds)
         })
     }

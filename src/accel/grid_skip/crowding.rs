@@ -20,8 +20,9 @@ use crate::scene::Mesh;
 const CROWD: f64 = 16.0;
 
 /// Triangles in a cell, in the mean over the surface, that are few enough where there were too many. `sphereflake:4`, which
-/// has 26, gets cells less than half as large, and its primary rays are twice as fast, bounce rays half as fast again.
-const FEW: f64 = 5.0;
+/// has 26 at n = 231, gets n = 411: from 300 to 520 primary rays differ by a twentieth, the finer the faster, and bounce rays by
+/// as much, the other way round, since cells that are crowded still have boxes (see `crowded`).
+const FEW: f64 = 8.0;
 
 /// How much n may rise between two looks.
 const STEP: f64 = 2.0;

@@ -81,11 +81,8 @@ pub(super) fn trace<'a, R: Rays<'a>>(grid: &GridSkip, batch: &mut R) {
         for lane in Ones(to_test) {
             let lane = lane % LANES;
             let flight = &mut flights[lane];
-            for block in spans[lane].blocks() {
-                if flight.visitor.test(block) {
-                    break;
-                }
-            }
+            let ray = &batch.rays()[flight.index];
+            grid.test::<R::Isa, _>(spans[lane], ray, &mut flight.visitor);
             ways.stop[lane] = flight.frame.stop(flight.visitor.t_limit());
         }
         for lane in Ones(ways.advance(grid.dims, &grid.bricks) & under_way) {

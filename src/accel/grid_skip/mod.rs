@@ -4,9 +4,10 @@
 //!   +---+---+---+---+---+---+---+      bricks      where in memory a cell is
 //!   |   |   |   |   |   | # | # |      distances   per direction, how far a ray may leap
 //!   +---+---+---+---+---+---+---+      cells       which cells list triangles, and in which blocks
-//!   | o===========>---->|>#>|   |      walk        the ways of several rays at once, one step
-//!   +---+---+---+---+---+---+---+      lanes       sixteen rays of a batch side by side
-//!   |   |   |   |   |   |   |   |      predict     what it will take, and the best n; crowding: where triangles crowd
+//!   | o===========>---->|>#>|   |      crowded     which blocks of a cell with many a ray meets
+//!   +---+---+---+---+---+---+---+      walk        the ways of several rays at once, one step
+//!   |   |   |   |   |   |   |   |      lanes       sixteen rays of a batch side by side
+//!   +---+---+---+---+---+---+---+      predict     what it will take, and the best n; crowding: where triangles crowd
 //!   +---+---+---+---+---+---+---+
 //! ```
 //!
@@ -38,6 +39,7 @@ use super::{
 
 mod bricks;
 mod cells;
+mod crowded;
 mod crowding;
 mod distances;
 mod lanes;
@@ -49,6 +51,7 @@ mod walk;
 
 use bricks::Bricks;
 use cells::Cells;
+use crowded::Crowded;
 use distances::OCTANTS;
 use predict::Predictor;
 use walk::Ways;
@@ -82,6 +85,7 @@ struct GridSkip {
     cells: Cells,
     /// Triangles in each block; the rest of its lanes repeat the last.
     filled: Vec<u8>,
+    crowded: Crowded,
 }
 
 impl GridSkip {
@@ -127,9 +131,11 @@ impl GridSkip {
             bricks.rows(brick).map(row).fold(0, |bits, row| bits | row)
         };
         let mut cells = Cells::new(bricks.len() / bricks::BRICK, listed);
-        let shared = share(&lattice, &bricks, &lists, &mut cells);
+        let (shared, first) = share(mesh, &lattice, &bricks, &lists, &mut cells);
         drop(lists);
-        let bytes = predict::bytes(lattice.dims, 0) + cells.bytes() + shared.bytes();
+        let crowded = Crowded::new(mesh, first, &shared.slots);
+        let bytes =
+            predict::bytes(lattice.dims, 0) + cells.bytes() + shared.bytes() + crowded.bytes();
         if bytes > limit {
             return Err(refuse(bytes, less()));
         }
@@ -140,6 +146,7 @@ impl GridSkip {
             bricks,
             cells,
             filled: shared.filled,
+            crowded,
         };
         Ok((grid, shared.slots))
     }
@@ -149,13 +156,33 @@ impl GridSkip {
     fn direction(&self, octant: usize) -> usize {
         octant * (self.distances.len() / OCTANTS)
     }
+
+    /// Tests the blocks of a cell that `ray` may meet; true when the query is finished.
+    #[inline(always)]
+    fn test<I: Isa, V: Visitor>(&self, span: Span, ray: &Ray, visitor: &mut V) -> bool {
+        if self.crowded.holds(span) {
+            return self.crowded.test::<I, V>(span, ray, visitor);
+        }
+        for block in span.blocks() {
+            if visitor.test(block) {
+                return true;
+            }
+        }
+        false
+    }
 }
 
 /// Listed cells that one task puts into blocks. Blocks are not shared beyond, so that they do not depend on the threads.
 const CHUNK: usize = 4096;
 
-/// Puts all that `lists` has into blocks, and the spans into `cells`.
-fn share(lattice: &Lattice, bricks: &Bricks, lists: &Lists, cells: &mut Cells) -> Shared {
+/// Puts all that `lists` has into blocks, and the spans into `cells`; returns the first block of a crowded cell as well.
+fn share(
+    mesh: &Mesh,
+    lattice: &Lattice,
+    bricks: &Bricks,
+    lists: &Lists,
+    cells: &mut Cells,
+) -> (Shared, u32) {
     let mut listed = Vec::with_capacity(cells.spans.len());
     cells.each_listed(0..bricks.len(), |place| {
         let at = bricks.cell(place).unwrap_or_default();
@@ -163,23 +190,29 @@ fn share(lattice: &Lattice, bricks: &Bricks, lists: &Lists, cells: &mut Cells) -
     });
     listed.par_sort_unstable();
     let put = |cells: &[(u32, u32, u32)]| {
-        let mut part = Shared::default();
-        part.put(
-            cells
-                .iter()
-                .map(|(_, rank, cell)| (*rank, lists.of(*cell as usize))),
-        );
-        part
+        let (mut few, mut many) = (Shared::default(), Shared::default());
+        let lists = cells
+            .iter()
+            .map(|(_, rank, cell)| (*rank, lists.of(*cell as usize)));
+        few.put(lists.clone().filter(|(_, list)| !crowded::is_crowd(list)));
+        for (rank, list) in lists.filter(|(_, list)| crowded::is_crowd(list)) {
+            let list = crowded::clustered(mesh, list);
+            many.put(std::iter::once((rank, list.as_slice())));
+        }
+        (few, many)
     };
-    let parts: Vec<Shared> = listed.par_chunks(CHUNK).map(put).collect();
-    let mut all = Shared::default();
-    for part in parts {
-        all.append(part, 0);
+    let parts: Vec<(Shared, Shared)> = listed.par_chunks(CHUNK).map(put).collect();
+    let (mut all, mut crowded) = (Shared::default(), Shared::default());
+    for (few, many) in parts {
+        all.append(few, 0);
+        crowded.append(many, 0);
     }
+    let first = all.filled.len() as u32;
+    all.append(crowded, 0);
     for (rank, span) in std::mem::take(&mut all.spans) {
         cells.spans[rank as usize] = span;
     }
-    all
+    (all, first)
 }
 
 /// The place of a cell on the curve: the bits of its numbers in turn, ten of each.
@@ -223,10 +256,8 @@ impl Structure for GridSkip {
             }
             if span.first != tested && span.count > 0 {
                 tested = span.first;
-                for block in span.blocks() {
-                    if visitor.test(block) {
-                        return;
-                    }
+                if self.test::<I, V>(span, ray, visitor) {
+                    return;
                 }
                 way.stop[0] = frame.stop(visitor.t_limit());
                 if way.exit[0] >= way.stop[0] {
@@ -286,7 +317,9 @@ impl Structure for GridSkip {
     }
 
     fn memory_bytes(&self) -> u64 {
-        (self.distances.len() + self.filled.len()) as u64 + self.cells.bytes()
+        (self.distances.len() + self.filled.len()) as u64
+            + self.cells.bytes()
+            + self.crowded.bytes()
     }
 
     fn validate(&self, mesh: &Mesh, lanes: &[u32]) -> Result<(), String> {

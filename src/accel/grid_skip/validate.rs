@@ -1,11 +1,12 @@
-//! Checks what `grid-skip` promises: spans within its blocks, no triangle missing from a cell it touches, and distances no
-//! greater than the empty cubes.
+//! Checks what `grid-skip` promises: spans within its blocks, no triangle missing from a cell it touches or from its block's box,
+//! and distances no greater than the empty cubes.
 
 use rayon::prelude::*;
 
 use crate::scene::Mesh;
 
 use super::super::grid::validate::each_touched_cell;
+use super::super::items::LANES;
 use super::super::share;
 use super::GridSkip;
 use super::distances::OCTANTS;
@@ -19,8 +20,17 @@ pub(super) fn check(grid: &GridSkip, mesh: &Mesh, lanes: &[u32]) -> Result<(), S
     let lists = |cell: usize, prim: u32| {
         let cell = grid.lattice.cell(cell as u64).unwrap_or_default();
         let rank = grid.cells.rank(grid.bricks.place(cell));
-        rank.is_some_and(|rank| share::holds(grid.cells.spans[rank], lanes, prim))
+        rank.is_some_and(|rank| {
+            let span = grid.cells.spans[rank];
+            if grid.crowded.holds(span) {
+                let blocks = span.first as usize..(span.first + span.count) as usize;
+                lanes[blocks.start * LANES..blocks.end * LANES].contains(&prim)
+            } else {
+                share::holds(span, lanes, prim)
+            }
+        })
     };
+    grid.crowded.validate(mesh, lanes)?;
     each_touched_cell(&grid.lattice, mesh, &lists)?;
     (0..OCTANTS)
         .into_par_iter()

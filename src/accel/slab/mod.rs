@@ -26,7 +26,7 @@ mod wide;
 
 pub(super) use pencil::{PacketSlabs, Pencil};
 pub(super) use rays::SlabRays;
-pub(super) use wide::{Clip, Scene, WideCorners, WideSlabRay};
+pub(super) use wide::{Clip, NO_BOXES, Scene, WideCorners, WideSlabRay, box_in, put_box};
 
 /// Half-width of the cone in units of the way along the ray's longest axis: 8ε = 16u. The test itself needs 4u.
 pub(super) const CONE: f32 = 8.0 * f32::EPSILON;

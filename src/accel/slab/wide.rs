@@ -15,6 +15,27 @@ use super::{CONE, RANGE, SlabRay};
 /// The boxes of up to eight children: for each axis the least and the greatest coordinates, a lane a child.
 pub(in super::super) type WideCorners = [[[f32; 8]; 2]; 3];
 
+/// No boxes.
+pub(in super::super) const NO_BOXES: WideCorners =
+    [[[f32::INFINITY; 8], [f32::NEG_INFINITY; 8]]; 3];
+
+/// Puts a box into a lane.
+pub(in super::super) fn put_box(boxes: &mut WideCorners, lane: usize, bounds: &Aabb) {
+    for axis in 0..3 {
+        boxes[axis][0][lane] = bounds.min[axis];
+        boxes[axis][1][lane] = bounds.max[axis];
+    }
+}
+
+/// The box in a lane.
+pub(in super::super) fn box_in(boxes: &WideCorners, lane: usize) -> Aabb {
+    let corner = |side: usize| [0, 1, 2].map(|axis: usize| boxes[axis][side][lane]);
+    Aabb {
+        min: corner(0).into(),
+        max: corner(1).into(),
+    }
+}
+
 /// What clips eight boxes at once.
 pub(in super::super) trait Clip<L> {
     /// The entry into and the exit from each box, within the interval that `limit` ends; a box is missed if the first is

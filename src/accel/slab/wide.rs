@@ -21,9 +21,9 @@ pub(in super::super) const NO_BOXES: WideCorners =
 
 /// Puts a box into a lane.
 pub(in super::super) fn put_box(boxes: &mut WideCorners, lane: usize, bounds: &Aabb) {
-    for axis in 0..3 {
-        boxes[axis][0][lane] = bounds.min[axis];
-        boxes[axis][1][lane] = bounds.max[axis];
+    for (axis, [least, greatest]) in boxes.iter_mut().enumerate() {
+        least[lane] = bounds.min[axis];
+        greatest[lane] = bounds.max[axis];
     }
 }
 

@@ -6,8 +6,9 @@ use crate::scene::Mesh;
 
 use super::super::items::LANES;
 use super::super::slab::{Corners, corners};
+use super::reinsert::{self, Work};
 use super::spatial::{self, Effort};
-use super::{binned, leaves, presplit, reinsert};
+use super::{binned, leaves, presplit};
 
 /// A box and what is in it: two children at `first` and `first + 1`, or `count` references from `first` on.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -114,7 +115,8 @@ impl BinaryTree {
 pub(in crate::accel) enum Build {
     /// Top down, split by histograms of centroids.
     Binned,
-    /// As [`Build::Binned`]; where that pays, planes first cut triangles where large boxes overlap.
+    /// As [`Build::Binned`]; where that pays, planes first cut triangles where large boxes overlap, elsewhere the largest
+    /// subtrees move as with [`Build::Reinsert`].
     Presplit,
     /// As [`Build::Binned`], and planes cut triangles where boxes would overlap.
     Sbvh,
@@ -160,8 +162,12 @@ pub(in crate::accel) fn binary(mesh: &Mesh, build: Build, most: usize) -> Binary
         Build::Binned => binned::build(binned::references(mesh), 1),
         Build::Presplit => presplit::build(mesh, 1),
         Build::Sbvh => spatial::build(mesh, Effort::FULL, 1),
-        Build::Reinsert => reinsert::optimised(binned::build(binned::references(mesh), 1)),
-        Build::SbvhReinsert => reinsert::optimised(spatial::build(mesh, Effort::FULL, 1)),
+        Build::Reinsert => {
+            reinsert::optimised(binned::build(binned::references(mesh), 1), Work::FULL)
+        }
+        Build::SbvhReinsert => {
+            reinsert::optimised(spatial::build(mesh, Effort::FULL, 1), Work::FULL)
+        }
     };
     if most > 1 {
         leaves::merged(&tree, most)

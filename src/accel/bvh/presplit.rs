@@ -176,6 +176,34 @@ mod tests {
     }
 
     #[test]
+    fn trees_without_splits_cost_less_where_large_nodes_have_better_places_and_else_stay_as_they_were()
+     {
+        // Too few large triangles to split, but they lie across everything.
+        let mut triangles = soup(20_000, 0.01, 1);
+        triangles.extend(soup(100, 1.0, 2));
+        let uneven = mesh(&triangles);
+        assert!(!pays(&uneven));
+        let [plain, moved] = [Build::Binned, Build::Presplit].map(|build| grouped(&uneven, build));
+        validate::validate(&moved, &uneven).expect("valid");
+        assert!(
+            moved.cost() < 0.9 * plain.cost(),
+            "{} {}",
+            moved.cost(),
+            plain.cost()
+        );
+        let sorted = |mut references: Vec<u32>| {
+            references.sort_unstable();
+            references
+        };
+        assert_eq!(sorted(moved.references), sorted(plain.references));
+        let even = mesh(&sphere(64));
+        assert_eq!(
+            grouped(&even, Build::Presplit),
+            grouped(&even, Build::Binned)
+        );
+    }
+
+    #[test]
     fn useless_is_what_the_box_has_more_than_the_triangle() {
         let corners = [
             Vec3::ZERO,

@@ -20,7 +20,7 @@ use crate::scene::Mesh;
 const CROWD: f64 = 16.0;
 
 /// Triangles in a cell, in the mean over the surface, that are few enough where there were too many. `sphereflake:4`, which
-/// has 26 at n = 231, gets n = 411: from 300 to 520 primary rays differ by a twentieth, the finer the faster, and bounce rays by
+/// has 26 at n = 231, gets n = 414: from 300 to 520 primary rays differ by a twentieth, the finer the faster, and bounce rays by
 /// as much, the other way round, since cells that are crowded still have boxes (see `crowded`).
 const FEW: f64 = 8.0;
 

@@ -30,6 +30,12 @@ impl Span {
         self.first..self.first + self.count
     }
 
+    /// The triangles in the lanes of its blocks, of those of all blocks.
+    pub fn lanes(self, all: &[u32]) -> &[u32] {
+        let blocks = self.first as usize..(self.first + self.count) as usize;
+        &all[blocks.start * LANES..blocks.end * LANES]
+    }
+
     /// Triangles in the blocks, of which each holds as many as `filled` says.
     pub fn references(self, filled: &[u8]) -> u32 {
         let blocks = self.first as usize..(self.first + self.count) as usize;
@@ -147,8 +153,7 @@ pub(super) fn validate(
 
 /// Whether the blocks of `span` hold `prim`. A list of several blocks ascends, as it was handed in.
 pub(super) fn holds(span: Span, lanes: &[u32], prim: u32) -> bool {
-    let blocks = span.first as usize..(span.first + span.count) as usize;
-    let lanes = &lanes[blocks.start * LANES..blocks.end * LANES];
+    let lanes = span.lanes(lanes);
     if span.count > 1 {
         lanes.binary_search(&prim).is_ok()
     } else {

@@ -33,7 +33,7 @@
 //!
 //! So it pays on architecture and plants; a mesh of small, even triangles is already split well.
 //!
-//! With [`Work::TOP`] on leaves of up to eight, for a tenth to a sixth of the build, rays a second through `bvh-wide` (primary,
+//! With [`Work::TOP`] on leaves of up to eight, for a tenth to a fifth of the build, where nothing moves 2 %, rays a second through `bvh-wide` (primary,
 //! bounce, random; `moller-trumbore`, one thread, an AMD EPYC with AVX-512): Crytek Sponza 1.01, 1.10, 1.09; kitchen 0.95, 1.05,
 //! 1.04; `city:300` 0.99, 1.05, 1.04; CAD counter 1.00, 1.01, 1.02; `sphereflake:4`, whose boxes shrink as much, 0.99, 1.01, 0.98.
 
@@ -63,7 +63,7 @@ impl Work {
         least: 0.0,
     };
 
-    /// Where a tree is to be built fast: the first pass takes a tenth to a fifth off on architecture (`city:300`, the kitchen,
+    /// Where a tree is to be built fast: the first pass takes an eighth to a fifth off on architecture (`city:300`, the kitchen,
     /// the Crytek Sponza), a thousandth on scanned meshes (Stanford bunny, armadillo, Nefertiti), nothing on soups.
     pub const TOP: Self = Self {
         part: 32,

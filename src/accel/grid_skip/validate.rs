@@ -6,7 +6,6 @@ use rayon::prelude::*;
 use crate::scene::Mesh;
 
 use super::super::grid::validate::each_touched_cell;
-use super::super::items::LANES;
 use super::super::share;
 use super::GridSkip;
 use super::distances::OCTANTS;
@@ -23,8 +22,8 @@ pub(super) fn check(grid: &GridSkip, mesh: &Mesh, lanes: &[u32]) -> Result<(), S
         rank.is_some_and(|rank| {
             let span = grid.cells.spans[rank];
             if grid.crowded.holds(span) {
-                let blocks = span.first as usize..(span.first + span.count) as usize;
-                lanes[blocks.start * LANES..blocks.end * LANES].contains(&prim)
+                // Clusters do not ascend.
+                span.lanes(lanes).contains(&prim)
             } else {
                 share::holds(span, lanes, prim)
             }

@@ -14,10 +14,10 @@ use super::packet::{MOST, VECTOR};
 use super::{Rays, Structure, Visitor};
 
 /// Cost of a ray in a packet of 64, about in nanoseconds, above which packets of 16 are better.
-const TOO_WIDE: u32 = 20;
+const TOO_WIDE: u32 = 15;
 
 /// Cost of a ray in a packet of 16 below which 64 may go together.
-const CHEAP: u32 = 15;
+const CHEAP: u32 = 12;
 
 /// Rays that go alone until a packet is tried again: at first, and most, where it was tried in vain again and again.
 const ALONE: Range<usize> = 256..8192;

@@ -40,10 +40,6 @@ const GROUP: usize = SIXTEEN;
 /// Rays that are looked at together to make groups.
 pub(super) const WINDOW: usize = 128;
 
-/// So many rays of a group at a node, in the mean, cost less together than in turns: where order counts, and where any hit
-/// will do. As measured with bounce rays, which share 10 of 16, and shadow rays, which share 9 to 14.
-const MANY: [u32; 2] = [10, 9];
-
 /// Fewer rays than this go alone.
 const FEW: u32 = 3;
 
@@ -74,9 +70,9 @@ pub(super) struct Shared {
 }
 
 impl Shared {
-    /// Whether that was enough for a group to pay.
-    pub fn pays<V: Visitor>(self) -> bool {
-        self.rays >= MANY[usize::from(!V::ORDERED)] * self.nodes
+    /// Whether a node was visited by so many of a group, in the mean.
+    pub fn by_so_many(self, rays: u32) -> bool {
+        self.rays >= rays * self.nodes
     }
 }
 

@@ -203,7 +203,7 @@ impl Structure for BvhWide {
             Way::Hybrid | Way::Interleaved => {
                 run_apart::<Interleaved, _, _>(self, batch, all, stacks);
             }
-            Way::Mixed => way::mixed(self, batch, all, stacks),
+            Way::Mixed => way::mixed(self, batch, all, stacks, false),
         }
     }
 

@@ -15,7 +15,7 @@ use crate::geometry::lanes::Isa;
 /// Cost of a ray in a packet above which it had better go with a group: on three meshes with many triangles a pixel (city,
 /// sphereflake, armadillo) primary rays are a tenth to a fifth faster than with a bound of 120. Bounds from 28 to 55 are alike
 /// within a few hundredths.
-const TOO_DEAR: u32 = 35;
+const TOO_DEAR: u32 = 28;
 
 impl Together for BvhWide {
     #[inline(always)]
@@ -40,6 +40,6 @@ impl Together for BvhWide {
     /// Neighbours may have much of their way in common, even where they are no packet.
     #[inline(always)]
     fn apart<'a, R: Rays<'a>>(&self, batch: &mut R, range: Range<usize>, stacks: &mut Stacks) {
-        way::mixed(self, batch, range, stacks);
+        way::mixed(self, batch, range, stacks, true);
     }
 }

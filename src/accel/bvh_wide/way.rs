@@ -5,9 +5,9 @@ use std::ops::Range;
 use crate::geometry::Ray;
 use crate::registry::{ParamKind, ParamSpec, Params};
 
-use super::super::{Rays, Visitor};
 use super::super::batch::run_apart;
 use super::super::packets::share_origin;
+use super::super::{Rays, Visitor};
 use super::BvhWide;
 use super::hybrid::{Hybrid, WINDOW};
 use super::interleaved::Interleaved;

@@ -87,7 +87,7 @@ const TOGETHER: Range<usize> = WINDOW..1024;
 const APART: Range<usize> = 1024..8192;
 
 /// So many rays of a group at a node, in the mean, cost less together than in turns. As measured: bounce rays share 10 of 16
-/// where both are alike (with a bound of 9 those of `city:300` and `sphereflake:4` are 3 and 4 % slower, with 8 by 6 and 7 %),
+/// where both are alike (with a bound of 9 those of `city:300` and `sphereflake:4` are 4 and 3 % slower, with 8 6 and 7 %),
 /// shadow rays 9 to 14. Primary rays share less where both are alike: with 9 or 8 those of `plant` are 7 % faster than with 10,
 /// of `city:300` and `sphereflake:4` within 2 %.
 fn many<V: Visitor>(from_one_point: bool) -> u32 {

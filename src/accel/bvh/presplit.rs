@@ -204,26 +204,6 @@ mod tests {
     }
 
     #[test]
-    fn a_tree_stays_as_it_was_where_only_nodes_as_large_as_the_scene_could_be_spared() {
-        let mut triangles = Vec::new();
-        for i in 0..5 {
-            let moved = Vec3::new(0.2 * i as f32, 0.1 * (i * 2 % 5) as f32, 0.5);
-            let small = sphere(32).into_iter();
-            triangles.extend(small.map(|corners| corners.map(|corner| 0.05 * corner + moved)));
-        }
-        // A ground in the middle of the list, in several layers: its boxes are as large as that of the scene.
-        for layer in 0..12 {
-            let z = 0.3 + 0.05 * layer as f32;
-            let [a, b, c] = [[-5.0, -5.0, z], [5.0, -5.0, z], [0.0, 5.0, z]];
-            triangles.push([a, b, c].map(Vec3::from));
-        }
-        let on_ground = mesh(&triangles);
-        assert!(!pays(&on_ground));
-        // Not `assert_eq`, which would print both.
-        assert!(grouped(&on_ground, Build::Presplit) == grouped(&on_ground, Build::Binned));
-    }
-
-    #[test]
     fn useless_is_what_the_box_has_more_than_the_triangle() {
         let corners = [
             Vec3::ZERO,

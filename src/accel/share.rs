@@ -30,15 +30,20 @@ impl Span {
         self.first..self.first + self.count
     }
 
+    /// As [`Span::blocks`], of an array.
+    fn places(self) -> Range<usize> {
+        self.first as usize..(self.first + self.count) as usize
+    }
+
     /// The triangles in the lanes of its blocks, of those of all blocks.
     pub fn lanes(self, all: &[u32]) -> &[u32] {
-        let blocks = self.first as usize..(self.first + self.count) as usize;
+        let blocks = self.places();
         &all[blocks.start * LANES..blocks.end * LANES]
     }
 
     /// Triangles in the blocks, of which each holds as many as `filled` says.
     pub fn references(self, filled: &[u8]) -> u32 {
-        let blocks = self.first as usize..(self.first + self.count) as usize;
+        let blocks = self.places();
         filled[blocks].iter().map(|count| u32::from(*count)).sum()
     }
 }

@@ -204,6 +204,15 @@ mod tests {
     }
 
     #[test]
+    fn the_sphereflake_stays_as_it_was_since_only_nodes_as_large_as_the_scene_could_be_spared() {
+        let scene = crate::scene::load("sphereflake:3").unwrap();
+        let [plain, same] =
+            [Build::Binned, Build::Presplit].map(|build| grouped(&scene.mesh, build));
+        // Not `assert_eq`, which would print both.
+        assert!(plain == same);
+    }
+
+    #[test]
     fn useless_is_what_the_box_has_more_than_the_triangle() {
         let corners = [
             Vec3::ZERO,

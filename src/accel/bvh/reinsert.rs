@@ -33,9 +33,10 @@
 //!
 //! So it pays on architecture and plants; a mesh of small, even triangles is already split well.
 //!
-//! With [`Work::TOP`] on leaves of up to eight, for a tenth to a fifth of the build, where nothing moves 2 %, rays a second through `bvh-wide` (primary,
-//! bounce, random; `moller-trumbore`, one thread, an AMD EPYC with AVX-512): Crytek Sponza 1.01, 1.10, 1.09; kitchen 0.95, 1.05,
-//! 1.04; `city:300` 0.99, 1.05, 1.04; CAD counter 1.00, 1.01, 1.02; `sphereflake:4`, which is left as it was since, 0.99, 1.01, 0.98.
+//! With [`Work::TOP`] on leaves of up to eight, for a tenth to a fifth of the build, where nothing moves 2 %, rays a second through
+//! `bvh-wide` (primary, bounce, random; `moller-trumbore`, one thread, an AMD EPYC with AVX-512): Crytek Sponza 1.01, 1.10, 1.09;
+//! kitchen 0.95, 1.05, 1.04; `city:300` 0.99, 1.05, 1.04; CAD counter 1.00, 1.01, 1.02; `sphereflake:4`, which is left as it was
+//! since, 0.99, 1.01, 0.98.
 
 use rayon::prelude::*;
 
@@ -52,16 +53,16 @@ const PASSES: usize = 3;
 pub(super) struct Work {
     /// One node in so many looks for a better place in a pass: large boxes cost most.
     part: usize,
-    /// The share that a pass must take off the areas ([`Links::area`]) for another to follow; if the first does not, the tree
-    /// stays as it was.
-    least: f64,
+    /// The share that a pass must take off the areas ([`Links::area`]) for another to follow, if any; where the first does not,
+    /// the tree stays as it was.
+    least: Option<f64>,
 }
 
 impl Work {
     /// On the Crytek Sponza four passes of all nodes come 1 % lower and take ten times as long.
     pub const FULL: Self = Self {
         part: 8,
-        least: f64::NEG_INFINITY,
+        least: None,
     };
 
     /// Where a tree is to be built fast: the first pass takes 15 % off the Crytek Sponza and the kitchen, 6 % off the CAD counter,
@@ -69,7 +70,7 @@ impl Work {
     /// nothing off soups.
     pub const TOP: Self = Self {
         part: 32,
-        least: 0.015,
+        least: Some(0.015),
     };
 }
 
@@ -105,13 +106,14 @@ pub(super) fn optimised(tree: BinaryTree, work: Work) -> BinaryTree {
     for pass in 0..PASSES {
         let gain = links.pass(work.part);
         let before = std::mem::replace(&mut area, links.area());
-        let pays = before - area > work.least * before;
-        if pass == 0 && !pays {
+        let is_enough = |least| before - area > least * before;
+        if gain > 0.0 && work.least.is_none_or(is_enough) {
+            continue;
+        }
+        if pass == 0 {
             return tree;
         }
-        if gain <= 0.0 || !pays {
-            break;
-        }
+        break;
     }
     let moved = links.tree(&tree);
     // What is moved can come to lie too deep.

@@ -14,7 +14,7 @@
 //! quarter to two thirds (`raylab trace`, one thread, eight meshes from 6 thousand to a million triangles).
 //!
 //! Tried and not kept: lists of rays in place of bits (two fifths slower: what was just written in bytes is read as a
-//! vector), sorting eight keys where four are met (7 %), and preparing sixteen rays at once in lanes (3 %: taking one out
+//! vector), sorting eight keys where four are met (7 %), preparing sixteen rays at once in lanes (3 %: taking one out
 //! costs as much as preparing it), and meeting the children of all rays' nodes before any are put on a stack (alike, random rays of
 //! `city:300` 7 % slower). Eight rays are 5 % slower than sixteen, and those 2 % slower than 32.
 //!

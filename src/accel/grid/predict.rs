@@ -27,7 +27,7 @@ use crate::scene::Mesh;
 use super::lattice::pad;
 use super::{Settings, lists};
 
-/// Costs in units of a step: the median of what fits the times of rays best on seven meshes from 8 thousand to 100 thousand
+/// Costs in units of a step: the median of what fits the times of rays best on seven meshes from 10 thousand to 100 thousand
 /// triangles (scans, soups, cities, a sphereflake) with six n from 24 to 136 each, `woop`, one thread of an AMD EPYC with 1 MiB
 /// of second-level cache. Primary rays, whose neighbours visit the same cells: a step 6 to 19 ns, a test 7 to 12, their ratio 0.4 to
 /// 2; random rays, for whom the memory fetches both: 19 to 54 and 12 to 51, 0.3 to 1.3. In that cache alone, where a step takes

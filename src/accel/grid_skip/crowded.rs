@@ -16,18 +16,19 @@
 //! 17 and 2 to 12 %, a few rays gain a tenth); from 16 on, the nearest box first (7 to 12 % slower: sorting costs more than the
 //! tests it spares), and boxes of all sixteen rays before any block (bounce rays alike, primary rays 4 % slower).
 
+use std::marker::PhantomData;
 use std::ops::Range;
 
 use rayon::prelude::*;
 
+use crate::geometry::Aabb;
 use crate::geometry::lanes::{Isa, Lane, LaneMask, Ones, Task};
-use crate::geometry::{Aabb, Ray};
 use crate::scene::Mesh;
 
 use super::super::Visitor;
 use super::super::items::LANES;
 use super::super::share::Span;
-use super::super::slab::{Clip, NO_BOXES, Scene, WideCorners, WideSlabRay, box_in, put_box};
+use super::super::slab::{Clip, NO_BOXES, Scene, WideCorners, box_in, put_box};
 
 /// Triangles that a cell lists at most without being crowded.
 const FEW: usize = 8 * LANES;
@@ -70,15 +71,26 @@ impl Crowded {
         span.first >= self.first
     }
 
-    /// Tests the blocks of a crowded cell that `ray` meets; true when the query is finished.
+    /// Tests the blocks of a crowded cell that are met by what `slabs` gives; true when the query is finished.
     #[inline(always)]
-    pub fn test<I: Isa, V: Visitor>(&self, span: Span, ray: &Ray, visitor: &mut V) -> bool {
+    pub fn test<I: Isa, C: Clip<I::X8>, V: Visitor>(
+        &self,
+        span: Span,
+        slabs: impl Fn() -> C,
+        visitor: &mut V,
+    ) -> bool {
         I::enter(Met {
             crowded: self,
             span,
-            ray,
+            slabs,
             visitor,
+            lanes: PhantomData::<I>,
         })
+    }
+
+    /// What holds all boxes.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
     }
 
     /// Bytes of the boxes.
@@ -110,24 +122,21 @@ impl Crowded {
 /// to a tenth slower with it in that loop, for cells of more than 32; apart they are as much slower for these (primary rays of
 /// `plant` and `city:300` 8 and 10 %, the sphereflake's 2 % faster), and for more than 64 they are not, but bounce rays of `plant`
 /// with moller-trumbore.
-struct Met<'t, V> {
+struct Met<'t, I, S, V> {
     crowded: &'t Crowded,
     span: Span,
-    ray: &'t Ray,
+    slabs: S,
     visitor: &'t mut V,
+    lanes: PhantomData<I>,
 }
 
-impl<V: Visitor> Task for Met<'_, V> {
+impl<I: Isa, C: Clip<I::X8>, S: Fn() -> C, V: Visitor> Task for Met<'_, I, S, V> {
     type Out = bool;
 
     #[inline(always)]
-    fn run<I: Isa>(self) -> bool {
-        let Crowded {
-            first,
-            boxes,
-            scene,
-        } = self.crowded;
-        let slabs = WideSlabRay::new::<I::X8>(self.ray, scene);
+    fn run<Here: Isa>(self) -> bool {
+        let Crowded { first, boxes, .. } = self.crowded;
+        let slabs = (self.slabs)();
         let Range { mut start, end } = self.span.blocks();
         while start < end {
             let place = (start - first) as usize;

@@ -11,6 +11,7 @@ use std::ops::Range;
 
 use crate::geometry::lanes::Ones;
 
+use super::super::batch::{Course, run_apart};
 use super::super::share::Span;
 use super::super::{Rays, Visitor};
 use super::GridSkip;
@@ -30,10 +31,27 @@ struct Flight<V> {
     tested: u32,
 }
 
-/// Traces all rays of `batch`.
+/// Traces the rays in `range`.
 #[inline(always)]
-pub(super) fn trace<'a, R: Rays<'a>>(grid: &GridSkip, batch: &mut R) {
-    let mut waiting = 0..batch.rays().len();
+pub(super) fn trace<'a, R: Rays<'a>>(grid: &GridSkip, batch: &mut R, range: Range<usize>) {
+    run_apart::<SideBySide, GridSkip, R>(grid, batch, range, &mut ());
+}
+
+/// Rays go side by side.
+struct SideBySide;
+
+impl Course<GridSkip> for SideBySide {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<'a, R: Rays<'a>>(grid: &GridSkip, batch: &mut R, range: Range<usize>, (): &mut ()) {
+        go(grid, batch, range);
+    }
+}
+
+/// See [`trace`].
+#[inline(always)]
+fn go<'a, R: Rays<'a>>(grid: &GridSkip, batch: &mut R, mut waiting: Range<usize>) {
     if waiting.is_empty() {
         return;
     }

@@ -7,6 +7,7 @@
 //!   | o===========>---->|>#>|   |      crowded     which blocks of a cell with many a ray meets
 //!   +---+---+---+---+---+---+---+      walk        the ways of several rays at once, one step
 //!   |   |   |   |   |   |   |   |      lanes       sixteen rays of a batch side by side
+//!   |   |   |   |   |   |   |   |      slices      rays from one origin together
 //!   +---+---+---+---+---+---+---+      predict     what it will take, and the best n; crowding: where triangles crowd
 //!   +---+---+---+---+---+---+---+
 //! ```
@@ -31,6 +32,7 @@ use super::grid::lattice::Lattice;
 use super::grid::lists::Lists;
 use super::packets;
 use super::share::{Shared, Span};
+use super::slab::{Clip, WideSlabRay};
 use super::traced::finish_in_order;
 use super::{
     AcceleratorEntry, Blocks, BuildError, BuildRequest, MAX_N, PlaceKind, Rays, Resolution,
@@ -44,6 +46,7 @@ mod crowding;
 mod distances;
 mod lanes;
 mod predict;
+mod slices;
 #[cfg(test)]
 mod tests;
 mod validate;
@@ -160,8 +163,20 @@ impl GridSkip {
     /// Tests the blocks of a cell that `ray` may meet; true when the query is finished.
     #[inline(always)]
     fn test<I: Isa, V: Visitor>(&self, span: Span, ray: &Ray, visitor: &mut V) -> bool {
+        let scene = self.crowded.scene();
+        self.test_met::<I, _, _>(span, || WideSlabRay::new::<I::X8>(ray, scene), visitor)
+    }
+
+    /// As [`GridSkip::test`], of the ray or rays that `slabs` gives.
+    #[inline(always)]
+    fn test_met<I: Isa, C: Clip<I::X8>, V: Visitor>(
+        &self,
+        span: Span,
+        slabs: impl Fn() -> C,
+        visitor: &mut V,
+    ) -> bool {
         if self.crowded.holds(span) {
-            return self.crowded.test::<I, V>(span, ray, visitor);
+            return self.crowded.test::<I, _, V>(span, slabs, visitor);
         }
         for block in span.blocks() {
             if visitor.test(block) {
@@ -271,11 +286,13 @@ impl Structure for GridSkip {
 
     #[inline(always)]
     fn trace<'a, R: Rays<'a>>(&self, batch: &mut R, (): &mut ()) {
-        if R::Isa::SIXTEEN {
-            lanes::trace(self, batch);
-        } else {
-            let all = 0..batch.rays().len();
+        let all = 0..batch.rays().len();
+        if !R::Isa::SIXTEEN {
             packets::alone(self, batch, all, &mut ());
+        } else if R::WAYS && R::Visitor::ORDERED && packets::share_origin(batch.rays()) {
+            packets::trace(self, batch, &mut (), true);
+        } else {
+            lanes::trace(self, batch, all);
         }
     }
 

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use proptest::prelude::*;
 
 use super::super::testbed::{
-    assert_agrees, assert_agrees_at, built_at, mesh, nasty, ray_count, rays, soup, sphere,
+    assert_agrees, assert_agrees_at, assert_agrees_with, built_at, mesh, nasty, pencil, ray_count,
+    rays, soup, sphere,
 };
 use super::super::{build_for, parse};
 use super::*;
@@ -34,6 +35,24 @@ fn the_finest_grid_and_a_slim_one_are_answered_as_by_brute_force() {
     let mesh = mesh(&soup(300, 0.05, 5).into_iter().map(slim).collect::<Vec<_>>());
     let rays = rays(&mesh, 4000, 6);
     assert_agrees_at("slim", &mesh, ("grid-skip", Some(1024)), &rays, 0);
+    let pencil = pencil(&mesh, 4000, 6);
+    assert_agrees_at("slim", &mesh, ("grid-skip", Some(1024)), &pencil, 0);
+}
+
+#[test]
+fn packets_are_answered_as_by_brute_force() {
+    for (name, mesh) in nasty() {
+        for seed in 1..4 {
+            let rays = pencil(&mesh, ray_count(&mesh), seed);
+            // See above for the twins.
+            let fine: &[u32] = if name == "twins" { &[] } else { &[33, 100] };
+            for n in [1, 7].iter().chain(fine) {
+                for kernel in ["moller-trumbore", "woop"] {
+                    assert_agrees_with(kernel, name, &mesh, ("grid-skip", Some(*n)), &rays, 0);
+                }
+            }
+        }
+    }
 }
 
 /// What a build needs.
@@ -50,6 +69,12 @@ fn request<'a>(
         memory_limit: u64::MAX,
         set: InstructionSet::Portable,
     }
+}
+
+/// The grid over `mesh` at resolution `n`.
+pub(super) fn grid_of(mesh: &Arc<Mesh>, n: u32) -> GridSkip {
+    let accel = parse("grid-skip").unwrap();
+    GridSkip::new(&request(mesh, &accel, n)).unwrap().0
 }
 
 #[test]
@@ -220,5 +245,7 @@ proptest! {
         let rays = rays(&mesh, 300, seed ^ 1);
         assert_agrees_at("soup", &mesh, ("grid-skip", Some(n)), &rays, 0);
         assert_agrees_at("soup", &mesh, ("grid-skip:shape=n3", Some(n)), &rays, 0);
+        let pencil = pencil(&mesh, 300, seed ^ 2);
+        assert_agrees_at("soup", &mesh, ("grid-skip", Some(n)), &pencil, 0);
     }
 }

@@ -171,6 +171,27 @@ impl<'a, L: Lane<1>> Bundle<'a, L> {
         }
     }
 
+    /// Least and greatest component along `axis` for each one along `main`, as rounded.
+    #[inline(always)]
+    pub fn slopes(&self, axis: usize, main: usize) -> [f32; 2] {
+        let slope = |beams: &Beams<L>| {
+            let [x, y, z] = [beams.dirs.x, beams.dirs.y, beams.dirs.z];
+            let of = |axis: usize| match axis {
+                0 => x,
+                1 => y,
+                _ => z,
+            };
+            of(axis) / of(main)
+        };
+        let first = slope(&self.lanes[0]);
+        let (mut least, mut greatest) = (first, first);
+        for beams in &self.lanes[1..self.vectors()] {
+            let slope = slope(beams);
+            (least, greatest) = (least.min(slope), greatest.max(slope));
+        }
+        [least.least(), greatest.greatest()]
+    }
+
     /// Its vectors.
     #[inline(always)]
     fn vectors(&self) -> usize {

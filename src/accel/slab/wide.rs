@@ -43,6 +43,13 @@ pub(in super::super) trait Clip<L> {
     fn clip(&self, boxes: &WideCorners, limit: f32) -> (L, L);
 }
 
+impl<L, C: Clip<L>> Clip<L> for &C {
+    #[inline(always)]
+    fn clip(&self, boxes: &WideCorners, limit: f32) -> (L, L) {
+        (*self).clip(boxes, limit)
+    }
+}
+
 /// What holds all boxes that a ray will be tested against.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scene {

@@ -79,11 +79,16 @@ impl Child {
     }
 }
 
+/// Binary nodes below one whose children are put into an order that takes as long to find as to make a node.
+const LARGE: usize = 256;
+
 /// A binary tree and how it is best spread.
 struct Collapse<'a> {
     nodes: &'a [BinaryNode],
     references: &'a [u32],
     choices: Vec<Choice>,
+    /// The areas of the leaves before each node, and of all at the end.
+    leaves: Vec<f64>,
 }
 
 impl BvhWide {
@@ -102,6 +107,7 @@ impl BvhWide {
                 nodes: &tree.nodes,
                 references: &tree.references,
                 choices: choices(tree),
+                leaves: leaf_areas(&tree.nodes),
             };
             collapse.all(&mut part)
         };
@@ -115,6 +121,20 @@ impl BvhWide {
         };
         (wide, part.blocks.slots)
     }
+}
+
+/// The areas of the leaves among `nodes` before each of them, and of all at the end.
+fn leaf_areas(nodes: &[BinaryNode]) -> Vec<f64> {
+    let mut areas = pages::with_capacity(nodes.len() + 1);
+    let mut sum = 0.0;
+    areas.push(sum);
+    for node in nodes {
+        if node.is_leaf() {
+            sum += half_area(&node.bounds());
+        }
+        areas.push(sum);
+    }
+    areas
 }
 
 impl Collapse<'_> {
@@ -161,12 +181,17 @@ impl Collapse<'_> {
             count: 0,
         };
         self.divide(subtree, WIDTH, &mut lanes);
-        // Where any hit will do the last lane is visited first. The largest box is the likeliest to block: against the
-        // smallest first, shadow rays are a seventh (engine, plant) to a third (sponza, armadillo) faster, and slower by a
-        // seventh on the bunny alone.
-        let mut sorted = lanes
-            .subtrees
-            .map(|s| (half_area(&self.nodes[s.root].bounds()), s));
+        // Where any hit will do the last lane is visited first: near the root what promises most, below the largest box.
+        let is_large = subtree.below(self.nodes) >= LARGE;
+        let mut sorted = [(0.0, Subtree::NONE); WIDTH];
+        for (sorted, subtree) in sorted.iter_mut().zip(&lanes.subtrees[..lanes.count]) {
+            let key = if is_large {
+                self.promise(*subtree)
+            } else {
+                half_area(&self.nodes[subtree.root].bounds())
+            };
+            *sorted = (key, *subtree);
+        }
         sorted[..lanes.count].sort_by(|a, b| a.0.total_cmp(&b.0));
         let node = part.nodes.len();
         part.nodes.push(Node::EMPTY);
@@ -191,6 +216,26 @@ impl Collapse<'_> {
             part.nodes[node].set(lane, child, &self.nodes[subtree.root].bounds());
         }
         Child::node(node)
+    }
+
+    /// How much a subtree is worth to be visited before its neighbours by a ray that any hit will block.
+    ///
+    /// It blocks a ray that meets its box the likelier, the greater the areas of its leaves are against the box's,
+    /// 1 - e^(-l / b); what it costs to learn goes with its depth; and larger boxes are met by more rays of a group, b^¼. Steps a
+    /// shadow ray, largest box first and so: sponza 5.2 to 3.7, CAD counter 5.5 to 5.2, eight other meshes within 3 %; rays a
+    /// second follow. Without the last factor: bunny 11.8 to 10.7, Nefertiti 11.6 to 9.7, but armadillo 10.1 to 12.3. With areas
+    /// of triangles, which take longer to look up, alike.
+    fn promise(&self, subtree: Subtree) -> f64 {
+        let root = &self.nodes[subtree.root];
+        let area = half_area(&root.bounds());
+        let leaves = if root.is_leaf() {
+            area
+        } else {
+            self.leaves[subtree.end] - self.leaves[root.first as usize]
+        };
+        let references = subtree.references(self.nodes).len() as f64;
+        let blocks = 1.0 - (-leaves / area.max(f64::MIN_POSITIVE)).exp();
+        blocks * area.sqrt().sqrt() / (2.0 + references.log2())
     }
 
     /// Lists what both halves of `subtree` become when they take so many lanes together.

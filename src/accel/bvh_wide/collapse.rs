@@ -181,7 +181,7 @@ impl Collapse<'_> {
             count: 0,
         };
         self.divide(subtree, WIDTH, &mut lanes);
-        // Where any hit will do the last lane is visited first: near the root what promises most, below the largest box.
+        // Where any hit will do the last lane is visited first: near the root what promises most, farther down the largest box.
         let is_large = subtree.below(self.nodes) >= LARGE;
         let mut sorted = [(0.0, Subtree::NONE); WIDTH];
         for (sorted, subtree) in sorted.iter_mut().zip(&lanes.subtrees[..lanes.count]) {
@@ -292,7 +292,7 @@ mod tests {
     use super::super::super::items::LANES;
     use super::super::super::testbed::{assert_same_on_threads, mesh, soup};
     use super::*;
-    use crate::geometry::Vec3;
+    use crate::geometry::{Aabb, Vec3};
 
     #[test]
     fn one_thread_and_many_collapse_to_the_same_tree() {
@@ -305,6 +305,34 @@ mod tests {
             assert_eq!(wide.validate(&mesh, &slots), Ok(()));
             assert_same_on_threads(|| BvhWide::collapse(&tree, &mesh));
         }
+    }
+
+    #[test]
+    fn a_wall_is_visited_before_larger_boxes_of_dust_by_rays_that_any_hit_blocks() {
+        let corner = |x: f32, y: f32| Vec3::new(x, y, 3.0);
+        let (a, b, c, d) = (
+            corner(0.0, 0.0),
+            corner(1.0, 0.0),
+            corner(1.0, 1.0),
+            corner(0.0, 1.0),
+        );
+        let mut triangles = soup(5000, 0.001, 5);
+        triangles.extend([[a, b, c], [a, c, d]]);
+        let mesh = mesh(&triangles);
+        let tree = grouped(&mesh, Build::Binned);
+        let (wide, slots) = BvhWide::collapse(&tree, &mesh);
+        let top: Vec<(Child, Aabb)> = wide.nodes[0].children().into_iter().collect();
+        let (last, wall) = *top
+            .iter()
+            .rfind(|(child, _)| *child != Child::NONE)
+            .unwrap();
+        let blocks = last.blocks();
+        let lanes = blocks.start as usize * LANES..blocks.end as usize * LANES;
+        assert!(last.is_leaf() && slots[lanes].contains(&5000));
+        assert!(
+            top.iter()
+                .any(|(_, dust)| half_area(dust) > half_area(&wall))
+        );
     }
 
     #[test]

@@ -118,10 +118,10 @@ impl Crowded {
     }
 }
 
-/// A ray in a crowded cell; in a function of its own, so that it takes no registers from the loop over rays. Other meshes were up
-/// to a tenth slower with it in that loop, for cells of more than 32; apart they are as much slower for these (primary rays of
-/// `plant` and `city:300` 8 and 10 %, the sphereflake's 2 % faster), and for more than 64 they are not, but bounce rays of `plant`
-/// with moller-trumbore.
+/// A ray or a packet in a crowded cell; in a function of its own, so that it takes no registers from the loop over rays. Other
+/// meshes were up to a tenth slower with it in that loop, for cells of more than 32; apart they are as much slower for these
+/// (primary rays of `plant` and `city:300` 8 and 10 %, the sphereflake's 2 % faster), and for more than 64 they are not, but bounce
+/// rays of `plant` with moller-trumbore.
 struct Met<'t, I, S, V> {
     crowded: &'t Crowded,
     span: Span,

@@ -321,7 +321,7 @@ mod tests {
         let mesh = mesh(&triangles);
         let tree = grouped(&mesh, Build::Binned);
         let (wide, slots) = BvhWide::collapse(&tree, &mesh);
-        let top: Vec<(Child, Aabb)> = wide.nodes[0].children().into_iter().collect();
+        let top: Vec<(Child, Aabb)> = wide.nodes[0].children().collect();
         let (last, wall) = *top
             .iter()
             .rfind(|(child, _)| *child != Child::NONE)

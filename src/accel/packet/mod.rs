@@ -175,13 +175,8 @@ impl<'a, L: Lane<1>> Bundle<'a, L> {
     #[inline(always)]
     pub fn slopes(&self, axis: usize, main: usize) -> [f32; 2] {
         let slope = |beams: &Beams<L>| {
-            let [x, y, z] = [beams.dirs.x, beams.dirs.y, beams.dirs.z];
-            let of = |axis: usize| match axis {
-                0 => x,
-                1 => y,
-                _ => z,
-            };
-            of(axis) / of(main)
+            let dirs = beams.dirs.permuted([axis, main, main]);
+            dirs.x / dirs.y
         };
         let first = slope(&self.lanes[0]);
         let (mut least, mut greatest) = (first, first);

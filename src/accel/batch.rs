@@ -248,11 +248,18 @@ impl<'a, T: Items, K: Kernel, I: Isa, A: Answer, const OCCLUSION: bool> Rays<'a>
         let kernel = &self.packed.kernel;
         let items = &self.packed.items[item as usize];
         let mut taken = 0;
+        let interval = if K::EXACT_T {
+            // What lies outside may be for the kernel to say.
+            [f32::NEG_INFINITY, f32::INFINITY].map(I::Rays::splat)
+        } else {
+            [rays.t_min, rays.t_max]
+        };
         if OCCLUSION {
-            let intervals = [rays.t_min, rays.t_max];
             for place in Ones(met) {
                 let (_, triangle) = T::triangle::<K>(items, item, place);
-                taken |= kernel.hit_within(&rays.prepared, &triangle, intervals);
+                let found = kernel.intersect_within(&rays.prepared, &triangle, interval);
+                // Not a branch: what is within is none.
+                taken |= found.map_or(0, |hit| hit.mask.bits());
             }
             taken &= active;
             for lane in Ones(taken) {
@@ -262,16 +269,11 @@ impl<'a, T: Items, K: Kernel, I: Isa, A: Answer, const OCCLUSION: bool> Rays<'a>
         }
         for place in Ones(met) {
             let (prim, triangle) = T::triangle::<K>(items, item, place);
-            let Some(hit) = kernel.intersect(&rays.prepared, &triangle) else {
+            let found = kernel.intersect_within(&rays.prepared, &triangle, interval);
+            let Some(hit) = found else {
                 continue;
             };
-            // What lies outside the interval may be for the kernel to say.
-            let hit_by = if K::EXACT_T {
-                hit.mask
-            } else {
-                hit.within(rays.t_min, rays.t_max)
-            };
-            let hit_by = hit_by.bits() & active;
+            let hit_by = hit.mask.bits() & active;
             if hit_by == 0 {
                 continue;
             }

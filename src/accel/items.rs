@@ -208,8 +208,8 @@ impl Items for Blocks {
     ) -> bool {
         let (packed, prepared) = (query.packed, query.prepared::<LANES, I::X8>());
         let block = &packed.items[item as usize];
-        let found = packed.kernel.intersect(&prepared, &block.triangles);
         if C::COUNTS {
+            let found = packed.kernel.intersect(&prepared, &block.triangles);
             let mut finished = false;
             for lane in block.filled() {
                 let prim = block.prims[lane];
@@ -227,20 +227,19 @@ impl Items for Blocks {
             }
             return finished;
         }
+        let interval = [query.t_least(), query.t_most()].map(I::X8::splat);
+        let found = packed
+            .kernel
+            .intersect_within(&prepared, &block.triangles, interval);
         let Some(hit) = found else {
             return false;
         };
-        let [least, most] = [query.t_least(), query.t_most()].map(I::X8::splat);
-        let met = hit.within(least, most).bits();
-        if met == 0 {
-            return false;
-        }
         let bounds = K::t_error_bound(&prepared, &block.triangles, &hit);
         let mut rows = [[0.0; LANES]; 4];
         for (row, lanes) in rows.iter_mut().zip([hit.t, hit.u, hit.v, bounds]) {
             lanes.write(row);
         }
-        for lane in Ones(met) {
+        for lane in Ones(hit.mask.bits()) {
             let lane = lane & (LANES - 1);
             let ([t, u, v, bound], prim) = (rows.map(|row| row[lane]), block.prims[lane]);
             if query.offer_met(Hit { t, u, v, prim }, || bound) && OCCLUSION {

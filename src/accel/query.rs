@@ -21,8 +21,8 @@ pub struct Packed<T: Items, K: Kernel> {
 pub struct Query<'a, T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool> {
     pub packed: &'a Packed<T, K>,
     pub ray: &'a Ray,
-    /// Made when the first item is tested, since many rays meet none; one lane, spread where it is read: to write eight and
-    /// read them back took longer.
+    /// Made when the first item is tested, or before; one lane, spread where it is read: to write eight and read them back
+    /// took longer.
     prepared: Option<K::Prepared<1, f32>>,
     lanes: PhantomData<I>,
     /// The answer so far.
@@ -60,7 +60,7 @@ impl<'a, T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool>
         self.counts = [f32::NEG_INFINITY, f32::INFINITY];
     }
 
-    /// The ray in the kernel's form.
+    /// The ray in the kernel's form, made in advance or now.
     #[inline(always)]
     pub fn prepared<const W: usize, L: Lane<W>>(&mut self) -> K::Prepared<W, L> {
         let (kernel, ray) = (&self.packed.kernel, self.ray);
@@ -186,6 +186,12 @@ impl<T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool> Visitor
     const WATCHED: bool = C::COUNTS;
     const ORDERED: bool = !OCCLUSION;
     const DIRECT: bool = K::DIRECT;
+
+    #[inline(always)]
+    fn prepare(&mut self) {
+        let ray = LaneRay::splat(self.ray);
+        self.prepared = Some(self.packed.kernel.prepare(self.ray, &ray));
+    }
 
     #[inline(always)]
     fn step(&mut self, place: u64, leaf: bool, references: u32, entry: f64, exit: f64) {

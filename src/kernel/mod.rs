@@ -95,6 +95,13 @@ impl<const W: usize, L: Lane<W>, R> LaneHit<W, L, R> {
     pub(crate) fn within(&self, t_min: L, t_max: L) -> L::Mask {
         self.mask & self.t.ge(t_min) & self.t.le(t_max)
     }
+
+    /// These lanes only; `None` if there are none.
+    #[inline(always)]
+    fn only_within(self, [t_min, t_max]: [L; 2]) -> Option<Self> {
+        let mask = self.within(t_min, t_max);
+        mask.any().then_some(Self { mask, ..self })
+    }
 }
 
 /// A ray/triangle intersection method.
@@ -145,18 +152,17 @@ pub trait Kernel: Debug + Clone + Send + Sync + 'static {
         triangles: &Self::Packed<W>,
     ) -> Option<LaneHit<W, L, Self::Rest<W, L>>>;
 
-    /// Which of many rays a triangle hits, a bit each, at a `t` within the intervals given: what [`Kernel::intersect`] tells of
-    /// it. Here a kernel may do without branches: of a few triangles near a group of rays every second one is hit, and a
-    /// branch is guessed wrong as often. Not asked where [`Kernel::EXACT_T`] is set.
+    /// As [`Kernel::intersect`], of hits at a `t` within these intervals, both ends of which belong to them. Here a kernel may do
+    /// without branches but the last: of rays that begin on a surface every second one has a triangle on its line, behind it or
+    /// where it begins, and a branch is guessed wrong as often.
     #[inline(always)]
-    fn hit_within<L: Lane<1>>(
+    fn intersect_within<const W: usize, L: Lane<W>>(
         &self,
-        rays: &Self::Prepared<1, L>,
-        triangle: &Self::Packed<1>,
-        [t_min, t_max]: [L; 2],
-    ) -> u32 {
-        let found = self.intersect(rays, triangle);
-        found.map_or(0, |hit| hit.within(t_min, t_max).bits())
+        ray: &Self::Prepared<W, L>,
+        triangles: &Self::Packed<W>,
+        interval: [L; 2],
+    ) -> Option<LaneHit<W, L, Self::Rest<W, L>>> {
+        self.intersect(ray, triangles)?.only_within(interval)
     }
 
     /// A bound on the absolute error of the `t` that this kernel computed for one triangle it accepted.

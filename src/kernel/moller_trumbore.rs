@@ -158,13 +158,13 @@ impl<const EPS: bool> Kernel for MollerTrumbore<EPS> {
     }
 
     #[inline(always)]
-    fn hit_within<L: Lane<1>>(
+    fn intersect_within<const W: usize, L: Lane<W>>(
         &self,
-        rays: &LaneRay<L>,
-        tri: &Packed<1>,
-        [t_min, t_max]: [L; 2],
-    ) -> u32 {
-        self.meet(rays, tri).within(t_min, t_max).bits()
+        ray: &LaneRay<L>,
+        tri: &Packed<W>,
+        interval: [L; 2],
+    ) -> Option<LaneHit<W, L>> {
+        self.meet(ray, tri).only_within(interval)
     }
 
     #[inline(always)]

@@ -73,9 +73,11 @@ pub struct Rest<L> {
 
 /// The frame's axes for a direction: z is the axis of its largest component, the last of equals.
 pub(super) fn frame(dir: Vec3) -> [usize; 3] {
-    let d = dir.abs().to_array();
-    let z = (1..3).fold(0, |best, a| if d[a] >= d[best] { a } else { best });
-    [(z + 1) % 3, (z + 2) % 3, z]
+    const FRAMES: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
+    let d = dir.abs();
+    let is_y = d.y >= d.x;
+    let most = if is_y { d.y } else { d.x };
+    FRAMES[if d.z >= most { 2 } else { usize::from(is_y) }]
 }
 
 /// Whose frame's z is x, and whose is y, unless [`frame`] says the same of all.

@@ -8,7 +8,7 @@
 //! **Source:** S. Woop, C. Benthin and I. Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
 //! **Differs:** see [`super::shear`]; a triangle without area is made one point when it is packed.
 
-use crate::geometry::lanes::{Lane, LaneMask, LaneRay, LaneVec3};
+use crate::geometry::lanes::{Lane, LaneRay, LaneVec3};
 use crate::geometry::{Ray, Vec3};
 use crate::registry::Params;
 
@@ -103,14 +103,14 @@ impl<const FUSED: bool> Kernel for Woop<FUSED> {
     }
 
     #[inline(always)]
-    fn hit_within<L: Lane<1>>(
+    fn intersect_within<const W: usize, L: Lane<W>>(
         &self,
-        rays: &Prepared<L, L::Mask>,
-        tri: &Corners<1>,
-        [t_min, t_max]: [L; 2],
-    ) -> u32 {
-        let met = shear::meet::<1, L, Self>(rays, tri);
-        met.hit().within(t_min, t_max).bits()
+        ray: &Prepared<L, L::Mask>,
+        tri: &Corners<W>,
+        interval: [L; 2],
+    ) -> Option<LaneHit<W, L, shear::Rest<L>>> {
+        let met = shear::meet::<W, L, Self>(ray, tri);
+        met.hit().only_within(interval)
     }
 
     #[inline(always)]

@@ -12,7 +12,7 @@
 //!
 //! Measured on seven meshes (`raylab trace`, one thread, this way alone): the hull before boxes makes primary rays a seventh
 //! faster and bounce rays a twentieth; before triangles, shadow and bounce rays on large ones (Crytek Sponza) a seventh, on
-//! small ones nothing; tests without branches where any hit will do an eighth ([`Kernel::hit_within`]). To fetch what lies on
+//! small ones nothing; tests without branches where any hit will do an eighth ([`Kernel::intersect_within`]). To fetch what lies on
 //! the stack pays where order counts (a million triangles: a tenth); where any hit will do most is never read.
 //!
 //! Tried and not kept (the same, an AMD EPYC of the Zen 4 generation): two or four groups in turns, so that the memory fetches for
@@ -20,7 +20,7 @@
 //! rays up to a fifth); and all that `moller-trumbore` computes of triangles whatever the direction, once for a block and rays from one
 //! point (nothing gained: few triangles of a block are tested).
 //!
-//! [`Kernel::hit_within`]: crate::kernel::Kernel::hit_within
+//! [`Kernel::intersect_within`]: crate::kernel::Kernel::intersect_within
 //!
 //! **Source:** C. Benthin, I. Wald, S. Woop, M. Ernst and W. Mark, "Combining Single and Packet-Ray Tracing for Arbitrary Ray
 //! Distributions on the Intel MIC Architecture", TVCG 2012. **Differs:** rays are grouped by octant first.

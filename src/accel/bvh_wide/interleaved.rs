@@ -25,8 +25,8 @@ use std::ops::Range;
 
 use crate::geometry::lanes::{Isa, Ones, prefetch};
 
-use super::super::Rays;
 use super::super::batch::Course;
+use super::super::{Rays, Visitor};
 use super::stack::{FLIGHTS, Stacks};
 use super::walk::Walk;
 use super::{BvhWide, Child, Node};
@@ -73,10 +73,12 @@ impl Course<BvhWide> for Interleaved {
         let mut kinds = Kinds::default();
         let mut under_way = 0_u32;
         for (flight, index) in waiting.by_ref().take(FLIGHTS).enumerate() {
+            let mut visitor = batch.begin(index);
+            visitor.prepare();
             flights.push(Flight {
                 index,
                 walk: Walk::<R::Isa>::new(tree, &batch.rays()[index]),
-                visitor: batch.begin(index),
+                visitor,
             });
             kinds.note(flight, tree.root);
             under_way |= 1 << flight;
@@ -89,6 +91,7 @@ impl Course<BvhWide> for Interleaved {
                     flight.index = index;
                     flight.walk = Walk::new(tree, &batch.rays()[index]);
                     batch.begin_again(index, &mut flight.visitor);
+                    flight.visitor.prepare();
                     kinds.note(number, tree.root);
                 } else {
                     under_way &= !(1 << number);

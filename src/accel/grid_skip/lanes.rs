@@ -18,7 +18,7 @@ use super::GridSkip;
 use super::walk::{Frame, Ways};
 
 /// Rays side by side.
-const LANES: usize = 16;
+const LANES: usize = 32;
 
 /// A ray under way.
 struct Flight<V> {
@@ -89,12 +89,11 @@ fn go<'a, R: Rays<'a>>(grid: &GridSkip, batch: &mut R, mut waiting: Range<usize>
         for lane in Ones(listed & under_way) {
             let lane = lane % LANES;
             let span = grid.cells.span(ways.cell[lane] as usize);
-            if span.first != flights[lane].tested {
-                flights[lane].tested = span.first;
-                spans[lane] = span;
-                to_test |= 1 << lane;
-                batch.prefetch(span.first);
-            }
+            // Not a branch: neighbours share blocks as often as not.
+            to_test |= u32::from(span.first != flights[lane].tested) << lane;
+            flights[lane].tested = span.first;
+            spans[lane] = span;
+            batch.prefetch(span.first);
         }
         for lane in Ones(to_test) {
             let lane = lane % LANES;
@@ -132,6 +131,7 @@ fn board<'a, R: Rays<'a>>(
             flight.frame = frame;
             flight.direction = grid.direction(octant);
             flight.tested = u32::MAX;
+            flight.visitor.prepare();
             ways.stop[lane] = frame.stop(flight.visitor.t_limit());
             return true;
         }

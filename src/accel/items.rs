@@ -10,7 +10,6 @@
 
 use rayon::prelude::*;
 
-use crate::geometry::Hit;
 use crate::geometry::lanes::{InstructionSet, Isa, Lane, LaneMask, Ones, Portable, Task};
 use crate::kernel::Kernel;
 use crate::scene::Mesh;
@@ -235,14 +234,10 @@ impl Items for Blocks {
             return false;
         };
         let bounds = K::t_error_bound(&prepared, &block.triangles, &hit);
-        let mut rows = [[0.0; LANES]; 4];
-        for (row, lanes) in rows.iter_mut().zip([hit.t, hit.u, hit.v, bounds]) {
-            lanes.write(row);
-        }
         for lane in Ones(hit.mask.bits()) {
             let lane = lane & (LANES - 1);
-            let ([t, u, v, bound], prim) = (rows.map(|row| row[lane]), block.prims[lane]);
-            if query.offer_met(Hit { t, u, v, prim }, || bound) && OCCLUSION {
+            let hit = hit.of_lane(lane, block.prims[lane]);
+            if query.offer_met(hit, || bounds.get(lane)) && OCCLUSION {
                 return true;
             }
         }

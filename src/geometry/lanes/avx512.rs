@@ -12,15 +12,16 @@ use std::arch::x86_64::{
     _mm_mask_blend_epi32, _mm_max_epu32, _mm_min_epu32, _mm_shuffle_epi32, _mm_storeu_ps,
     _mm_storeu_si128, _mm256_add_ps, _mm256_and_si256, _mm256_andnot_ps, _mm256_castps_si256,
     _mm256_castsi128_si256, _mm256_castsi256_si128, _mm256_cmp_ps_mask, _mm256_cmpeq_epi32_mask,
-    _mm256_div_ps, _mm256_fmadd_ps, _mm256_fmsub_ps, _mm256_loadu_ps, _mm256_loadu_si256,
-    _mm256_mask_blend_epi32, _mm256_mask_blend_ps, _mm256_maskz_compress_epi32,
+    _mm256_cvtss_f32, _mm256_div_ps, _mm256_fmadd_ps, _mm256_fmsub_ps, _mm256_loadu_ps,
+    _mm256_loadu_si256, _mm256_mask_blend_epi32, _mm256_mask_blend_ps, _mm256_maskz_compress_epi32,
     _mm256_maskz_compress_ps, _mm256_max_epu32, _mm256_max_ps, _mm256_min_epu32, _mm256_min_ps,
-    _mm256_mul_ps, _mm256_or_si256, _mm256_permutevar8x32_epi32, _mm256_set1_epi32, _mm256_set1_ps,
-    _mm256_setr_epi32, _mm256_sqrt_ps, _mm256_storeu_ps, _mm256_storeu_si256, _mm256_sub_ps,
-    _mm256_xor_ps, _mm512_add_ps, _mm512_andnot_ps, _mm512_castps_si512, _mm512_castps128_ps512,
-    _mm512_cmp_ps_mask, _mm512_cmpeq_epi32_mask, _mm512_div_ps, _mm512_extractf32x4_ps,
-    _mm512_fmadd_ps, _mm512_fmsub_ps, _mm512_insertf32x4, _mm512_loadu_ps, _mm512_mask_blend_ps,
-    _mm512_max_ps, _mm512_min_ps, _mm512_mul_ps, _mm512_reduce_min_ps, _mm512_set1_ps,
+    _mm256_mul_ps, _mm256_or_si256, _mm256_permutevar8x32_epi32, _mm256_permutexvar_ps,
+    _mm256_set1_epi32, _mm256_set1_ps, _mm256_setr_epi32, _mm256_sqrt_ps, _mm256_storeu_ps,
+    _mm256_storeu_si256, _mm256_sub_ps, _mm256_xor_ps, _mm512_add_ps, _mm512_andnot_ps,
+    _mm512_castps_si512, _mm512_castps128_ps512, _mm512_cmp_ps_mask, _mm512_cmpeq_epi32_mask,
+    _mm512_cvtss_f32, _mm512_div_ps, _mm512_extractf32x4_ps, _mm512_fmadd_ps, _mm512_fmsub_ps,
+    _mm512_insertf32x4, _mm512_loadu_ps, _mm512_mask_blend_ps, _mm512_max_ps, _mm512_min_ps,
+    _mm512_mul_ps, _mm512_permutexvar_ps, _mm512_reduce_min_ps, _mm512_set1_epi32, _mm512_set1_ps,
     _mm512_shuffle_ps, _mm512_sqrt_ps, _mm512_storeu_ps, _mm512_sub_ps, _mm512_unpackhi_ps,
     _mm512_unpacklo_ps, _mm512_xor_ps,
 };
@@ -36,7 +37,7 @@ macro_rules! lanes {
         $numbers:ident($register:ty), $mask:ident($bits:ty), $n:literal, triangles $w:literal,
         load $load:expr, $set1:ident $loadu:ident $storeu:ident $add:ident $sub:ident $mul:ident $div:ident
         $fma:ident $fms:ident $max:ident $min:ident $xor:ident $andnot:ident $sqrt:ident $blend:ident $cmp:ident
-        $cast:ident $same:ident
+        $cast:ident $same:ident $first:ident $permute:ident $places:ident
         $(, $least:item)?
     ) => {
         #[doc = concat!(stringify!($n), " `f32`.")]
@@ -114,10 +115,8 @@ macro_rules! lanes {
             }
             #[inline(always)]
             fn get(self, lane: usize) -> f32 {
-                let mut all = [0.0; $n];
-                // SAFETY: there is room for all numbers.
-                unsafe { $storeu(all.as_mut_ptr(), self.0) };
-                all[lane & ($n - 1)]
+                // SAFETY: as above; what is beyond the lanes counts from 0 again.
+                unsafe { $first($permute($places(lane as i32), self.0)) }
             }
             #[inline(always)]
             fn mul_add(self, factor: Self, term: Self) -> Self {
@@ -206,7 +205,7 @@ lanes!(
     load |xs: &[f32; 8]| F32x8(unsafe { _mm256_loadu_ps(xs.as_ptr()) }),
     _mm256_set1_ps _mm256_loadu_ps _mm256_storeu_ps _mm256_add_ps _mm256_sub_ps _mm256_mul_ps _mm256_div_ps
     _mm256_fmadd_ps _mm256_fmsub_ps _mm256_max_ps _mm256_min_ps _mm256_xor_ps _mm256_andnot_ps _mm256_sqrt_ps _mm256_mask_blend_ps _mm256_cmp_ps_mask
-    _mm256_castps_si256 _mm256_cmpeq_epi32_mask
+    _mm256_castps_si256 _mm256_cmpeq_epi32_mask _mm256_cvtss_f32 _mm256_permutexvar_ps _mm256_set1_epi32
 );
 
 lanes!(
@@ -214,7 +213,7 @@ lanes!(
     load |xs: &[f32; 1]| F32x16::splat(xs[0]),
     _mm512_set1_ps _mm512_loadu_ps _mm512_storeu_ps _mm512_add_ps _mm512_sub_ps _mm512_mul_ps _mm512_div_ps
     _mm512_fmadd_ps _mm512_fmsub_ps _mm512_max_ps _mm512_min_ps _mm512_xor_ps _mm512_andnot_ps _mm512_sqrt_ps _mm512_mask_blend_ps _mm512_cmp_ps_mask
-    _mm512_castps_si512 _mm512_cmpeq_epi32_mask,
+    _mm512_castps_si512 _mm512_cmpeq_epi32_mask _mm512_cvtss_f32 _mm512_permutexvar_ps _mm512_set1_epi32,
     #[inline(always)]
     fn least(self) -> f32 {
         // SAFETY: as above.

@@ -258,7 +258,7 @@ impl<'a, T: Items, K: Kernel, I: Isa, A: Answer, const OCCLUSION: bool> Rays<'a>
             for place in Ones(met) {
                 let (_, triangle) = T::triangle::<K>(items, item, place);
                 let found = kernel.intersect_within(&rays.prepared, &triangle, interval);
-                // Not a branch: what is within is none.
+                // Not a branch: where none is hit no bit is set.
                 taken |= found.map_or(0, |hit| hit.mask.bits());
             }
             taken &= active;

@@ -381,6 +381,72 @@ mod tests {
         }
     }
 
+    /// That what is hit within an interval is what is hit and lies within it, ends included, in every lane of every set.
+    struct WithinIsHitAndWithin;
+
+    /// A ray and a block of triangles: asks where it is hit within intervals, and gives in how many lanes it is hit at all.
+    struct Within<'a, K: Kernel>(Asked<'a, K>);
+
+    impl<K: Kernel> Task for Within<'_, K> {
+        type Out = u32;
+
+        fn run<I: Isa>(self) -> u32 {
+            let Asked { kernel, mesh, ray } = self.0;
+            let block = &Blocks::pack(kernel, mesh, &[0, 1, 2, 3, 4, 5, 5, 5])[0].triangles;
+            let prepared = kernel.prepare::<LANES, I::X8>(&ray, &LaneRay::splat(&ray));
+            let found = kernel.intersect(&prepared, block);
+            let within = |interval: [f32; 2]| {
+                let of_both = interval.map(I::X8::splat);
+                let expected = found.map_or(0, |hit| hit.within(of_both[0], of_both[1]).bits());
+                let hit = kernel.intersect_within(&prepared, block, of_both);
+                assert_eq!(hit.map_or(0, |hit| hit.mask.bits()), expected, "{ray:?}");
+                expected
+            };
+            within([f32::NEG_INFINITY, f32::INFINITY]);
+            let Some(hit) = found else {
+                return 0;
+            };
+            for lane in Ones(hit.mask.bits()) {
+                let t = hit.t.get(lane);
+                assert_eq!(within([t, t]) >> lane & 1, 1, "{ray:?} at {t}");
+                within([t.next_up(), f32::INFINITY]);
+                within([f32::NEG_INFINITY, t.next_down()]);
+            }
+            hit.mask.bits().count_ones()
+        }
+    }
+
+    impl KernelUser for WithinIsHitAndWithin {
+        type Out = u32;
+
+        fn with<K: Kernel>(self, kernel: K) -> u32 {
+            let mut dice = Dice::new(5);
+            let mut hits = 0;
+            for _ in 0..300 {
+                let triangles: Vec<[Vec3; 3]> = (0..6)
+                    .map(|_| [dice.vector(), dice.vector(), dice.vector()])
+                    .collect();
+                let mesh = mesh(&triangles);
+                let ray = Ray::new(dice.vector(), dice.vector());
+                let kernel = &kernel;
+                for set in InstructionSet::ALL.into_iter().filter(|s| s.is_available()) {
+                    let mesh = &mesh;
+                    hits += set.run(Within(Asked { kernel, mesh, ray }));
+                }
+            }
+            hits
+        }
+    }
+
+    #[test]
+    fn every_kernel_hits_within_an_interval_what_it_hits_and_lies_there() {
+        for entry in kernel::KERNELS {
+            let kernel = kernel::parse(entry.name).expect("a kernel");
+            let hits = kernel::dispatch(&kernel, WithinIsHitAndWithin).expect("a kernel");
+            assert!(hits > 100, "{}: {hits}", entry.name);
+        }
+    }
+
     /// The triangles of a mesh that have no corner behind a ray's origin, a bit each.
     fn in_front(mesh: &Mesh, ray: &Ray) -> u32 {
         let ahead = |corner: &Vec3| (*corner - ray.origin).dot(ray.dir) > 0.0;

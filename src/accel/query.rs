@@ -189,8 +189,10 @@ impl<T: Items, K: Kernel, I: Isa, C: Counter, const OCCLUSION: bool> Visitor
 
     #[inline(always)]
     fn prepare(&mut self) {
-        let ray = LaneRay::splat(self.ray);
-        self.prepared = Some(self.packed.kernel.prepare(self.ray, &ray));
+        if !K::Prepared::<1, f32>::CHEAP {
+            let ray = LaneRay::splat(self.ray);
+            self.prepared = Some(self.packed.kernel.prepare(self.ray, &ray));
+        }
     }
 
     #[inline(always)]

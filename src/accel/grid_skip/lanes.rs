@@ -1,11 +1,14 @@
-//! Sixteen rays of a batch go through the grid side by side, each at its own pace.
+//! Thirty-two rays of a batch go through the grid side by side, each at its own pace.
 //!
 //! ```text
-//! lanes:   ray 0   ray 1   ...   ray 15
-//!          where?  where?        where?      distances are read for all: sixteen misses of a cache overlap
+//! lanes:   ray 0   ray 1   ...   ray 31
+//!          where?  where?        where?      distances are read for all: their misses of a cache overlap
 //!                   test          test       the blocks of those in listed cells were asked for before the first test
 //!          step    step          step        one instruction stream for all; a ray that is done makes room for the next
 //! ```
+//!
+//! Thirty-two are 2 to 4 % faster than sixteen on `city:300`, on the bunny and `sphereflake:4` alike. Tried and not kept: the first
+//! block of each ray's cell, then the second of those that have one, and so on, in place of ray after ray (3 to 5 % slower).
 
 use std::ops::Range;
 

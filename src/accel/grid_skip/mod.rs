@@ -6,7 +6,7 @@
 //!   +---+---+---+---+---+---+---+      cells       which cells list triangles, and in which blocks
 //!   | o===========>---->|>#>|   |      crowded     which blocks of a cell with many a ray meets
 //!   +---+---+---+---+---+---+---+      walk        the ways of several rays at once, one step
-//!   |   |   |   |   |   |   |   |      lanes       sixteen rays of a batch side by side
+//!   |   |   |   |   |   |   |   |      lanes       many rays of a batch side by side
 //!   |   |   |   |   |   |   |   |      slices      rays from one origin together
 //!   +---+---+---+---+---+---+---+      predict     what it will take, and the best n; crowding: where triangles crowd
 //!   +---+---+---+---+---+---+---+

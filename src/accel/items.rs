@@ -316,13 +316,22 @@ mod tests {
         ray: Ray,
     }
 
+    impl<K: Kernel> Asked<'_, K> {
+        fn block(&self) -> Block<K::Packed<LANES>> {
+            Blocks::pack(self.kernel, self.mesh, &[0, 1, 2, 3, 4, 5, 5, 5]).remove(0)
+        }
+
+        fn prepared<L: Lane<LANES>>(&self) -> K::Prepared<LANES, L> {
+            self.kernel.prepare(&self.ray, &LaneRay::splat(&self.ray))
+        }
+    }
+
     impl<K: Kernel> Task for Asked<'_, K> {
         type Out = (u32, u32);
 
         fn run<I: Isa>(self) -> Self::Out {
+            let (block, prepared) = (&self.block(), self.prepared::<I::X8>());
             let Self { kernel, mesh, ray } = self;
-            let block = &Blocks::pack(kernel, mesh, &[0, 1, 2, 3, 4, 5, 5, 5])[0];
-            let prepared = kernel.prepare::<LANES, I::X8>(&ray, &LaneRay::splat(&ray));
             let hit = kernel.intersect(&prepared, &block.triangles);
             let scene = Scene::new(mesh.bounds());
             let slabs = WideSlabRay::new::<I::X8>(&ray, &scene);
@@ -391,9 +400,8 @@ mod tests {
         type Out = u32;
 
         fn run<I: Isa>(self) -> u32 {
-            let Asked { kernel, mesh, ray } = self.0;
-            let block = &Blocks::pack(kernel, mesh, &[0, 1, 2, 3, 4, 5, 5, 5])[0].triangles;
-            let prepared = kernel.prepare::<LANES, I::X8>(&ray, &LaneRay::splat(&ray));
+            let (block, prepared) = (&self.0.block().triangles, self.0.prepared::<I::X8>());
+            let Asked { kernel, ray, .. } = self.0;
             let found = kernel.intersect(&prepared, block);
             let within = |interval: [f32; 2]| {
                 let of_both = interval.map(I::X8::splat);
@@ -409,8 +417,12 @@ mod tests {
             for lane in Ones(hit.mask.bits()) {
                 let t = hit.t.get(lane);
                 assert_eq!(within([t, t]) >> lane & 1, 1, "{ray:?} at {t}");
-                within([t.next_up(), f32::INFINITY]);
-                within([f32::NEG_INFINITY, t.next_down()]);
+                for beside in [
+                    [t.next_up(), f32::INFINITY],
+                    [f32::NEG_INFINITY, t.next_down()],
+                ] {
+                    assert_eq!(within(beside) >> lane & 1, 0, "{ray:?} at {t}");
+                }
             }
             hit.mask.bits().count_ones()
         }

@@ -30,9 +30,15 @@ struct Flight<V> {
     frame: Frame,
     /// Where the distances of its direction begin.
     direction: usize,
-    /// First block of what it tested last.
-    tested: u32,
+    /// What the last cell lists that it was in and that lists any.
+    span: Span,
 }
+
+/// Before the first such cell.
+const NOWHERE: Span = Span {
+    first: u32::MAX,
+    count: 0,
+};
 
 /// Traces the rays in `range`.
 #[inline(always)]
@@ -59,7 +65,6 @@ fn go<'a, R: Rays<'a>>(grid: &GridSkip, batch: &mut R, mut waiting: Range<usize>
         return;
     }
     let mut ways = Ways::<LANES>::none();
-    let mut spans = [Span::default(); LANES];
     let mut flights = Vec::with_capacity(LANES);
     let mut under_way = 0_u32;
     for lane in 0..LANES {
@@ -68,7 +73,7 @@ fn go<'a, R: Rays<'a>>(grid: &GridSkip, batch: &mut R, mut waiting: Range<usize>
             visitor: batch.begin(0),
             frame: Frame::NONE,
             direction: 0,
-            tested: u32::MAX,
+            span: NOWHERE,
         });
         if board(
             grid,
@@ -93,16 +98,15 @@ fn go<'a, R: Rays<'a>>(grid: &GridSkip, batch: &mut R, mut waiting: Range<usize>
             let lane = lane % LANES;
             let span = grid.cells.span(ways.cell[lane] as usize);
             // Not a branch: neighbours share blocks as often as not.
-            to_test |= u32::from(span.first != flights[lane].tested) << lane;
-            flights[lane].tested = span.first;
-            spans[lane] = span;
+            to_test |= u32::from(span.first != flights[lane].span.first) << lane;
+            flights[lane].span = span;
             batch.prefetch(span.first);
         }
         for lane in Ones(to_test) {
             let lane = lane % LANES;
             let flight = &mut flights[lane];
             let ray = &batch.rays()[flight.index];
-            grid.test::<R::Isa, _>(spans[lane], ray, &mut flight.visitor);
+            grid.test::<R::Isa, _>(flight.span, ray, &mut flight.visitor);
             ways.stop[lane] = flight.frame.stop(flight.visitor.t_limit());
         }
         for lane in Ones(ways.advance(grid.dims, &grid.bricks) & under_way) {
@@ -133,7 +137,7 @@ fn board<'a, R: Rays<'a>>(
             flight.index = index;
             flight.frame = frame;
             flight.direction = grid.direction(octant);
-            flight.tested = u32::MAX;
+            flight.span = NOWHERE;
             flight.visitor.prepare();
             ways.stop[lane] = frame.stop(flight.visitor.t_limit());
             return true;

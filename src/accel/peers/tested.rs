@@ -75,9 +75,9 @@ struct Tested<T, K: Kernel> {
 }
 
 impl<T: Tree, K: Kernel> Tested<T, K> {
-    /// The nearest hit; for occlusion any.
-    #[inline(always)]
-    fn trace<const OCCLUSION: bool>(&self, ray: &Ray) -> Hit {
+    /// The nearest hit, or `any`. Which of the two is asked only where a triangle is hit, so one traversal is compiled for both.
+    #[inline(never)]
+    fn trace(&self, ray: &Ray, any: bool) -> Hit {
         let (kernel, mesh) = (&self.kernel, &*self.mesh);
         let prepared = kernel.prepare::<1, f32>(ray, &LaneRay::splat(ray));
         let mut best = Hit::MISS;
@@ -91,7 +91,7 @@ impl<T: Tree, K: Kernel> Tested<T, K> {
             let hit = Hit { t, u, v, prim };
             if kernel.within(mesh, ray, &hit) && kernel.nearer(mesh, ray, &hit, &best) {
                 best = hit;
-                if OCCLUSION {
+                if any {
                     return Next::Break(());
                 }
                 // As with raylab's own: a nearer triangle behind an error of the kernel's is not lost.
@@ -106,13 +106,13 @@ impl<T: Tree, K: Kernel> Tested<T, K> {
 impl<T: Tree, K: Kernel> Accelerator for Tested<T, K> {
     fn closest(&self, rays: &[Ray], hits: &mut [Hit]) {
         for (ray, hit) in rays.iter().zip(hits) {
-            *hit = self.trace::<false>(ray);
+            *hit = self.trace(ray, false);
         }
     }
 
     fn occluded(&self, rays: &[Ray], blocked: &mut [bool]) {
         for (ray, blocked) in rays.iter().zip(blocked) {
-            *blocked = self.trace::<true>(ray).is_hit();
+            *blocked = self.trace(ray, true).is_hit();
         }
     }
 

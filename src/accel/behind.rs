@@ -51,7 +51,7 @@ pub(super) struct Behind<'a, const ORDERED: bool> {
 }
 
 impl<'a, const ORDERED: bool> Behind<'a, ORDERED> {
-    fn new<V: Visitor>(visitor: &'a mut V) -> Self {
+    pub fn new<V: Visitor>(visitor: &'a mut V) -> Self {
         Self {
             watched: V::WATCHED,
             visitor,

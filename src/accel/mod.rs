@@ -77,11 +77,13 @@ pub trait Structure: Send + Sync + 'static {
     /// What one thread needs beside the structure to traverse it, e.g. mailboxes.
     type Scratch: Send;
 
-    /// What the places that list triangles are called.
-    const LEAF: PlaceKind = PlaceKind::Leaf;
-
     /// Whether the traversal is compiled for each kernel and query, so that tests are no calls; else once, see `behind`.
     const DIRECT: bool = true;
+
+    /// What the places that list triangles are called.
+    fn leaf(&self) -> PlaceKind {
+        PlaceKind::Leaf
+    }
 
     /// A fresh scratch.
     fn scratch(&self) -> Self::Scratch;

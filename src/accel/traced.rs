@@ -158,7 +158,7 @@ fn count<S: Structure, A: Answer>(
 /// See [`Accelerator::inspect`].
 #[inline(never)]
 fn record<S: Structure>(structure: &S, ray: &Ray, watched: &mut Watched<S>) -> Recording {
-    let mut recorder = Recorder::new(S::LEAF);
+    let mut recorder = Recorder::new(structure.leaf());
     let hit = watched(ray, &mut structure.scratch(), &mut recorder);
     let mut visits = recorder.visits;
     for visit in &mut visits {

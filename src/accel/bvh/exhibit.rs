@@ -16,7 +16,7 @@ pub(in super::super) const NAIVE_SLAB: AcceleratorEntry = AcceleratorEntry {
     control: true,
     build: |request| {
         finish(
-            Exhibit(NaiveSlab(Bvh::build(request.mesh, request.params))),
+            Exhibit::of(NaiveSlab(Bvh::build(request.mesh, request.params))),
             request,
         )
     },

@@ -69,7 +69,8 @@ fn exhibit<const ACCUMULATE: bool, const INSIDE_ONLY: bool>(
         ..Settings::read(&Params::default())
     };
     let grid = Grid::new(request, settings, request.n.unwrap_or(1).max(1))?;
-    finish(Exhibit(Mistaken::<ACCUMULATE, INSIDE_ONLY>(grid)), request)
+    let wrong = Mistaken::<ACCUMULATE, INSIDE_ONLY>(grid);
+    finish(Exhibit::of(wrong), request)
 }
 
 impl<const ACCUMULATE: bool, const INSIDE_ONLY: bool> Wrong for Mistaken<ACCUMULATE, INSIDE_ONLY> {

@@ -262,7 +262,9 @@ impl<M: Mailbox> Structure for Grid<M> {
     type Items = Singles;
     type Scratch = M;
 
-    const LEAF: PlaceKind = PlaceKind::Cell;
+    fn leaf(&self) -> PlaceKind {
+        PlaceKind::Cell
+    }
 
     fn scratch(&self) -> M {
         M::default()

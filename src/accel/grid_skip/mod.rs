@@ -240,7 +240,10 @@ impl Structure for GridSkip {
     type Items = Blocks;
     type Scratch = ();
 
-    const LEAF: PlaceKind = PlaceKind::Cell;
+
+    fn leaf(&self) -> PlaceKind {
+        PlaceKind::Cell
+    }
 
     fn scratch(&self) {}
 

@@ -163,9 +163,12 @@ impl Structure for Grid2Level {
     type Items = Blocks;
     type Scratch = ();
 
-    const LEAF: PlaceKind = PlaceKind::Cell;
     // Its walk costs far more than the calls.
     const DIRECT: bool = false;
+
+    fn leaf(&self) -> PlaceKind {
+        PlaceKind::Cell
+    }
 
     fn scratch(&self) {}
 

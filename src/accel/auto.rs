@@ -42,11 +42,10 @@
 //!
 //! Build time is not weighed: `bvh-wide` with its defaults is what is soonest built.
 
-use rayon::prelude::*;
-
 use crate::registry::{Choice, Params, Value};
 use crate::scene::Mesh;
 
+use super::parallel;
 use super::sah::half_area;
 use super::{AcceleratorEntry, BuildRequest, brute, bvh_wide};
 
@@ -136,17 +135,13 @@ pub fn picked(accel: &Choice, mesh: &Mesh) -> Option<String> {
 fn large_boxes(mesh: &Mesh) -> f64 {
     let scene = half_area(&mesh.bounds());
     let least = LARGE * scene / mesh.len() as f64;
-    let prims: Vec<u32> = (0..mesh.len() as u32).step_by(CHUNK).collect();
-    let sums: Vec<f64> = prims
-        .par_iter()
-        .map(|first| {
-            let end = (*first as usize + CHUNK).min(mesh.len()) as u32;
-            (*first..end)
-                .map(|prim| half_area(&mesh.triangle_bounds(prim)))
-                .filter(|area| *area > least)
-                .sum::<f64>()
-        })
-        .collect();
+    let sums = parallel::map(mesh.len().div_ceil(CHUNK), 1, |chunk| {
+        let end = ((chunk + 1) * CHUNK).min(mesh.len()) as u32;
+        ((chunk * CHUNK) as u32..end)
+            .map(|prim| half_area(&mesh.triangle_bounds(prim)))
+            .filter(|area| *area > least)
+            .sum::<f64>()
+    });
     sums.iter().sum::<f64>() / scene
 }
 

@@ -8,14 +8,12 @@
 //! A block is tested by one instruction stream for all its lanes, compiled for the instruction set of the processor. Lanes
 //! that are left repeat the last triangle: its hit is offered again and is not preferred to itself.
 
-use rayon::prelude::*;
-
 use crate::geometry::lanes::{InstructionSet, Isa, Lane, LaneMask, Ones, Portable, Task};
 use crate::kernel::Kernel;
 use crate::scene::Mesh;
 
 use super::packet::Packet;
-use super::pages;
+use super::parallel;
 use super::query::Query;
 use super::slab::{Clip, Scene, WideSlabRay};
 use super::visit::Counter;
@@ -179,21 +177,20 @@ impl Items for Blocks {
     type Item<K: Kernel> = Block<K::Packed<LANES>>;
 
     fn pack<K: Kernel>(kernel: &K, mesh: &Mesh, slots: &[u32]) -> Vec<Self::Item<K>> {
-        let mut blocks = pages::with_capacity(slots.len() / LANES);
         let (whole, _) = slots.as_chunks::<LANES>();
-        blocks.par_extend(whole.par_iter().enumerate().map(|(i, prims)| {
+        parallel::map(whole.len(), parallel::MANY, |i| {
             for prim in whole.get(i + 2 * AHEAD).into_iter().flatten() {
                 mesh.prefetch_triangle(*prim);
             }
             for prim in whole.get(i + AHEAD).into_iter().flatten() {
                 mesh.prefetch_corners(*prim);
             }
+            let prims = whole[i];
             Block {
                 triangles: kernel.pack(|lane| mesh.corners(prims[lane])),
-                prims: *prims,
+                prims,
             }
-        }));
-        blocks
+        })
     }
 
     fn lanes<K: Kernel>(items: &[Self::Item<K>]) -> Vec<u32> {

@@ -46,6 +46,7 @@ mod octree;
 mod packet;
 mod packets;
 mod pages;
+mod parallel;
 mod peers;
 mod plane_tree;
 mod query;

@@ -1,8 +1,6 @@
 //! Room for large arrays, in huge pages where the system offers them: a ray that jumps about in nodes and triangles then
 //! misses the page table's cache less often.
 
-use rayon::prelude::*;
-
 /// An empty vector with room for `count`, which the system is asked to put into huge pages before it is first touched.
 ///
 /// Small rooms are left alone. Where there are no huge pages this is [`Vec::with_capacity`].
@@ -11,13 +9,6 @@ pub(super) fn with_capacity<T>(count: usize) -> Vec<T> {
     #[cfg(target_os = "linux")]
     advise(room.as_ptr() as usize, count * size_of::<T>());
     room
-}
-
-/// As many copies of `value`, in such a room. In parallel, since the first touch of a page takes longer than writing it.
-pub(super) fn filled<T: Copy + Send + Sync>(count: usize, value: T) -> Vec<T> {
-    let mut filled = with_capacity(count);
-    filled.par_extend(rayon::iter::repeat_n(value, count));
-    filled
 }
 
 /// As many zeros, in such a room. None is written: fresh pages are zero.
@@ -63,7 +54,6 @@ mod tests {
             room.extend(0..count as u32);
             assert!(room.iter().copied().eq(0..count as u32));
             assert_eq!(zeroed(count), vec![0; count]);
-            assert!(filled(count, 7).iter().eq(std::iter::repeat_n(&7, count)));
         }
     }
 }

@@ -11,12 +11,11 @@
 //! **Where the time goes**, of one thread with leaves of up to eight references: a quarter each on histograms, on moving
 //! references and on small subtrees; see [`loops`](super::loops) for what was tried.
 
-use rayon::prelude::*;
-
 use crate::geometry::Aabb;
 use crate::scene::Mesh;
 
 use super::super::pages;
+use super::super::parallel::{self, MANY};
 use super::super::stack::MAX_DEPTH;
 use super::loops::Loops;
 use super::partition::Task;
@@ -34,8 +33,10 @@ pub(super) fn references(mesh: &Mesh) -> Vec<Reference> {
 /// The references of all triangles of `mesh` before room for so many more.
 pub(super) fn references_before(mesh: &Mesh, room: usize) -> Vec<Reference> {
     let mut references = pages::with_capacity(mesh.len() + room);
-    let reference = |prim| Reference::new(mesh.triangle_bounds(prim), prim);
-    references.par_extend((0..mesh.len() as u32).into_par_iter().map(reference));
+    parallel::extend(&mut references, mesh.len(), MANY, |i| {
+        let prim = i as u32;
+        Reference::new(mesh.triangle_bounds(prim), prim)
+    });
     references.resize(mesh.len() + room, Reference::NONE);
     references
 }
@@ -43,7 +44,7 @@ pub(super) fn references_before(mesh: &Mesh, room: usize) -> Vec<Reference> {
 /// A tree over `references` whose leaves hold at most `most` each, which is no more than [`small::MOST`].
 pub(super) fn build(mut references: Vec<Reference>, most: usize) -> BinaryTree {
     let count = references.len();
-    let mut spare = pages::filled(count, Reference::NONE);
+    let mut spare = parallel::filled(count, Reference::NONE);
     grow(count, most, |place| {
         let task = Task::new(&mut references, &mut spare, count);
         split(task, place, Loops::best())
@@ -55,7 +56,7 @@ pub(super) fn grow(count: usize, most: usize, make: impl FnOnce(Place) -> Limb) 
     if count == 0 {
         return BinaryTree::EMPTY;
     }
-    let mut references = pages::filled(count, 0);
+    let mut references = parallel::filled(count, 0);
     let limb = make(Place {
         prims: &mut references,
         first_reference: 0,

@@ -13,6 +13,7 @@ use std::ops::Range;
 use glam::{BVec4A, Vec4};
 use rayon::prelude::*;
 
+use super::super::parallel;
 use super::bins::{Grid, Histogram, Split};
 use super::loops::{Loops, Partition};
 use super::reference::{Bounds, Extent, Reference};
@@ -31,11 +32,11 @@ const SAMPLE: usize = 128;
 pub(super) fn chunked<T: Send>(
     references: &[Reference],
     work: impl Fn(&[Reference]) -> T + Sync,
-    join: impl Fn(T, T) -> T + Sync + Send,
+    join: impl Fn(T, T) -> T,
 ) -> T {
     if references.len() >= SHARED {
-        let joined = references.par_chunks(CHUNK).map(&work).reduce_with(join);
-        if let Some(joined) = joined {
+        let parts = parallel::chunks(references, CHUNK, &work);
+        if let Some(joined) = parts.into_iter().reduce(join) {
             return joined;
         }
     }
@@ -95,10 +96,7 @@ impl<'a> Task<'a> {
         let histogram = if references.len() < SHARED {
             (loops.histogram)(references, &grid)
         } else {
-            references
-                .par_chunks(CHUNK)
-                .map(|chunk| (loops.histogram)(chunk, &grid))
-                .collect_into_vec(&mut parts);
+            parts = parallel::chunks(references, CHUNK, |chunk| (loops.histogram)(chunk, &grid));
             let mut joined = Histogram::EMPTY;
             for part in &parts {
                 joined.join(part);

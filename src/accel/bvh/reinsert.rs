@@ -40,6 +40,7 @@
 
 use rayon::prelude::*;
 
+use super::super::parallel::{self, MANY};
 use super::super::stack::MAX_DEPTH;
 use super::reference::Bounds;
 use super::{BinaryTree, Node, validate};
@@ -47,6 +48,9 @@ use super::{BinaryTree, Node, validate};
 /// Passes over the tree. Three bring about nine tenths of what ten do: of what they save in SAH cost, 87 % on `plant`, 93 %
 /// on the Crytek Sponza and 99 % on `sphereflake:4`.
 const PASSES: usize = 3;
+
+/// Searches that one task does: each takes microseconds.
+const SEARCHES: usize = 64;
 
 /// How much work is done.
 #[derive(Debug, Clone, Copy)]
@@ -141,22 +145,20 @@ impl Links {
         let scale = nodes
             .first()
             .map_or(1.0, |root| Bounds::from(root.bounds()).scale());
-        let mut linked: Vec<Linked> = nodes
-            .par_iter()
-            .map(|node| {
-                let bounds = Bounds::from(node.bounds());
-                Linked {
-                    bounds,
-                    area: bounds.half_area(scale),
-                    parent: NONE,
-                    children: if node.is_leaf() {
-                        [NONE; 2]
-                    } else {
-                        [node.first, node.first + 1]
-                    },
-                }
-            })
-            .collect();
+        let mut linked = parallel::map(nodes.len(), MANY, |i| {
+            let node = &nodes[i];
+            let bounds = Bounds::from(node.bounds());
+            Linked {
+                bounds,
+                area: bounds.half_area(scale),
+                parent: NONE,
+                children: if node.is_leaf() {
+                    [NONE; 2]
+                } else {
+                    [node.first, node.first + 1]
+                },
+            }
+        });
         for id in 0..linked.len() {
             for child in linked[id].children {
                 if child != NONE {
@@ -209,10 +211,10 @@ impl Links {
             candidates.select_nth_unstable_by(count, order);
             candidates.truncate(count);
         }
-        let mut moves: Vec<Move> = candidates
-            .par_iter()
-            .filter_map(|&id| self.best_move(id))
-            .collect();
+        let best = parallel::map(candidates.len(), SEARCHES, |i| {
+            self.best_move(candidates[i])
+        });
+        let mut moves: Vec<Move> = best.into_iter().flatten().collect();
         moves.par_sort_unstable_by(|a, b| b.gain.total_cmp(&a.gain).then(a.node.cmp(&b.node)));
         moves.into_iter().map(|next| self.try_move(next)).sum()
     }

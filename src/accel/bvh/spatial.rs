@@ -19,7 +19,7 @@ use crate::geometry::Aabb;
 use crate::scene::Mesh;
 
 use super::super::clip::clipped_halves;
-use super::super::pages;
+use super::super::parallel;
 use super::super::sah::half_area;
 use super::binned::{self, Limb, PARALLEL, Place};
 use super::chop::{self, Plane, Search};
@@ -72,7 +72,7 @@ pub(super) fn build(mesh: &Mesh, effort: Effort, most: usize) -> BinaryTree {
     let count = mesh.len();
     let more = (effort.more * count as f64) as usize;
     let mut references = binned::references_before(mesh, more);
-    let mut spare = pages::filled(count + more, Reference::NONE);
+    let mut spare = parallel::filled(count + more, Reference::NONE);
     let builder = Builder {
         mesh,
         overlap: effort.overlap * half_area(&mesh.bounds()),

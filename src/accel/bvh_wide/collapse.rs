@@ -6,12 +6,11 @@
 
 use std::cmp::Reverse;
 
-use rayon::prelude::*;
-
 use crate::scene::Mesh;
 
 use super::super::bvh::{BinaryTree, Node as BinaryNode};
 use super::super::pages;
+use super::super::parallel;
 use super::super::sah::half_area;
 use super::super::slab::Scene;
 use super::{BvhWide, Child, Node};
@@ -157,13 +156,11 @@ impl Collapse<'_> {
             }
             return root;
         }
-        let parts: Vec<(Child, Part)> = all_apart
-            .par_iter()
-            .map(|apart| {
-                let mut part = Part::default();
-                (self.child(apart.subtree, apart.depth, &mut part), part)
-            })
-            .collect();
+        let parts = parallel::map(all_apart.len(), 1, |i| {
+            let apart = &all_apart[i];
+            let mut part = Part::default();
+            (self.child(apart.subtree, apart.depth, &mut part), part)
+        });
         for (apart, (child, part)) in all_apart.iter().zip(&parts) {
             top.append(apart, *child, part);
         }

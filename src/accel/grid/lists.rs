@@ -17,6 +17,7 @@ use rayon::prelude::*;
 use crate::geometry::Vec3;
 use crate::scene::Mesh;
 
+use super::super::parallel;
 use super::lattice::{Block, Lattice};
 use super::overlap::Overlap;
 
@@ -173,27 +174,25 @@ fn chunks<T: Overlap>(
     most: u64,
 ) -> Option<Vec<Chunk>> {
     let total = AtomicU64::new(0);
-    (0..mesh.len().div_ceil(CHUNK))
-        .into_par_iter()
-        .map(|chunk| {
-            let prims = chunk * CHUNK..((chunk + 1) * CHUNK).min(mesh.len());
-            let mut found = Vec::with_capacity(2 * prims.len());
-            let mut told = 0;
-            for prim in prims {
-                let prim = prim as u32;
-                each_cell::<T>(lattice, mesh, prim, &mut |cell| {
-                    found.push(Pair { cell, prim });
-                });
-                // The sum only grows, so whether it passes `most` does not depend on the threads.
-                let new = (found.len() - told) as u64;
-                told = found.len();
-                if total.fetch_add(new, Ordering::Relaxed) + new > most {
-                    return None;
-                }
+    let chunks = parallel::map(mesh.len().div_ceil(CHUNK), 1, |chunk| {
+        let prims = chunk * CHUNK..((chunk + 1) * CHUNK).min(mesh.len());
+        let mut found = Vec::with_capacity(2 * prims.len());
+        let mut told = 0;
+        for prim in prims {
+            let prim = prim as u32;
+            each_cell::<T>(lattice, mesh, prim, &mut |cell| {
+                found.push(Pair { cell, prim });
+            });
+            // The sum only grows, so whether it passes `most` does not depend on the threads.
+            let new = (found.len() - told) as u64;
+            told = found.len();
+            if total.fetch_add(new, Ordering::Relaxed) + new > most {
+                return None;
             }
-            Some(Chunk::sorted(&found, shift, buckets))
-        })
-        .collect()
+        }
+        Some(Chunk::sorted(&found, shift, buckets))
+    });
+    chunks.into_iter().collect()
 }
 
 /// Calls `found` with the index of every cell that triangle `prim` touches by `T`.

@@ -8,9 +8,7 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
-
-use super::super::pages;
+use super::super::parallel::{self, MANY};
 use super::super::share::Span;
 use super::bricks::BRICK;
 
@@ -39,8 +37,7 @@ impl Cells {
             listed: listed(brick),
             before: 0,
         };
-        let mut words = pages::with_capacity(count);
-        words.par_extend((0..count).into_par_iter().map(word));
+        let mut words = parallel::map(count, MANY, word);
         let mut before = 0;
         for word in &mut words {
             word.before = before;

@@ -19,14 +19,13 @@
 use std::marker::PhantomData;
 use std::ops::Range;
 
-use rayon::prelude::*;
-
 use crate::geometry::Aabb;
 use crate::geometry::lanes::{Isa, Lane, LaneMask, Ones, Task};
 use crate::scene::Mesh;
 
 use super::super::Visitor;
 use super::super::items::LANES;
+use super::super::parallel::{self, MANY};
 use super::super::share::Span;
 use super::super::slab::{Clip, NO_BOXES, Scene, WideCorners, box_in, put_box};
 
@@ -50,9 +49,11 @@ impl Crowded {
     /// Of blocks from `first` on, of all whose triangles are `slots`.
     pub fn new(mesh: &Mesh, first: u32, slots: &[u32]) -> Self {
         let crowded = slots.get(first as usize * LANES..).unwrap_or_default();
-        let boxes = crowded.par_chunks(BOXES * LANES).map(|blocks| {
+        let groups = crowded.len().div_ceil(BOXES * LANES);
+        let boxes = parallel::map(groups, MANY, |group| {
+            let blocks = &crowded[group * BOXES * LANES..];
             let mut boxes = NO_BOXES;
-            for (lane, block) in blocks.chunks(LANES).enumerate() {
+            for (lane, block) in blocks.chunks(LANES).take(BOXES).enumerate() {
                 let bounds = block.iter().map(|&prim| mesh.triangle_bounds(prim));
                 put_box(&mut boxes, lane, &bounds.fold(Aabb::EMPTY, Aabb::union));
             }
@@ -60,7 +61,7 @@ impl Crowded {
         });
         Self {
             first,
-            boxes: boxes.collect(),
+            boxes,
             scene: Scene::new(mesh.bounds()),
         }
     }

@@ -31,6 +31,7 @@ use super::grid::density::ByDensity;
 use super::grid::lattice::Lattice;
 use super::grid::lists::Lists;
 use super::packets;
+use super::parallel;
 use super::share::{Shared, Span};
 use super::slab::{Clip, WideSlabRay};
 use super::traced::finish_in_order;
@@ -216,7 +217,7 @@ fn share(
         }
         (few, many)
     };
-    let parts: Vec<(Shared, Shared)> = listed.par_chunks(CHUNK).map(put).collect();
+    let parts = parallel::chunks(&listed, CHUNK, put);
     let (mut all, mut crowded) = (Shared::default(), Shared::default());
     for (few, many) in parts {
         all.append(few, 0);
@@ -239,7 +240,6 @@ fn along_curve(cell: [u32; 3]) -> u32 {
 impl Structure for GridSkip {
     type Items = Blocks;
     type Scratch = ();
-
 
     fn leaf(&self) -> PlaceKind {
         PlaceKind::Cell

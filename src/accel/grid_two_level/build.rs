@@ -1,13 +1,12 @@
 //! Builds the two levels: the coarse lists, and in each coarse cell that lists triangles, in parallel, its own.
 
-use rayon::prelude::*;
-
 use crate::scene::Mesh;
 
 use super::super::grid::Settings;
 use super::super::grid::density::ByDensity;
 use super::super::grid::lattice::Lattice;
 use super::super::grid::lists::Lists;
+use super::super::parallel;
 use super::super::share::{Shared, Span};
 use super::super::{BuildError, BuildRequest, MAX_N};
 use super::predict::{self, Predictor};
@@ -58,10 +57,9 @@ pub(super) fn build(request: &BuildRequest) -> Result<(Grid2Level, Vec<u32>), Bu
         return Err(refuse(limit.saturating_add(1), less()));
     };
     let places: Vec<u32> = (0..coarse.len() as u32).collect();
-    let parts: Vec<Part> = places
-        .par_chunks(CHUNK)
-        .map(|places| part(&coarse, &lists, settings, predictor.density, mesh, places))
-        .collect();
+    let parts = parallel::chunks(&places, CHUNK, |places| {
+        part(&coarse, &lists, settings, predictor.density, mesh, places)
+    });
     drop(lists);
     let bytes =
         |part: &Part| u64::from(part.cells) * size_of::<Span>() as u64 + part.shared.bytes();

@@ -1,10 +1,9 @@
 //! The sweep over bins: parts are counted where they begin and where they end, and the planes between bins are tried. Around
 //! the best of them the exact places of parts are tried, and so are the planes that cut off the space outside all parts.
 
-use rayon::prelude::*;
-
 use crate::geometry::{Aabb, Vec3};
 
+use super::super::parallel;
 use super::super::plane_tree::{Part, Plane};
 use super::cost::Splits;
 use super::sweep::{Events, Priced, cheaper};
@@ -143,11 +142,9 @@ pub(super) fn best(cell: &Aabb, parts: &[Part]) -> Option<Priced> {
     let bins = Bins::new(cell);
     let counts = if parts.len() >= 2 * CHUNK {
         let count = |chunk: &[Part]| Counts::of(chunk, &bins);
-        let join = |a: Counts, b: Counts| a.joined(&b);
-        parts
-            .par_chunks(CHUNK)
-            .map(count)
-            .reduce(|| Counts::NONE, join)
+        let counts = parallel::chunks(parts, CHUNK, count);
+        let join = |a: Counts, b: &Counts| a.joined(b);
+        counts.iter().fold(Counts::NONE, join)
     } else {
         Counts::of(parts, &bins)
     };

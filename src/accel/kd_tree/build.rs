@@ -1,9 +1,8 @@
 //! The upper levels, divided in parallel.
 
-use rayon::prelude::*;
-
 use crate::scene::Mesh;
 
+use super::super::parallel;
 use super::super::plane_tree::cost::leaf as leaf_cost;
 use super::super::plane_tree::{
     Grown, Node, Part, Plane, PlaneTree, Splitter, Subtree, halves, parts,
@@ -81,7 +80,7 @@ pub(in super::super) fn divide(
     if parts.len() < 2 * CHUNK {
         return divide(parts);
     }
-    let chunks: Vec<[Vec<Part>; 2]> = parts.par_chunks(CHUNK).map(divide).collect();
+    let chunks = parallel::chunks(parts, CHUNK, divide);
     [0, 1].map(|side: usize| {
         let count = chunks.iter().map(|chunk| chunk[side].len()).sum();
         let mut all = Vec::with_capacity(count);

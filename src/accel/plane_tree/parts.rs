@@ -1,11 +1,10 @@
 //! The parts of triangles in a cell, and their way to the sides of an axis-parallel plane.
 
-use rayon::prelude::*;
-
 use crate::geometry::Aabb;
 use crate::scene::Mesh;
 
 use super::super::clip::clipped_halves;
+use super::super::parallel::{self, MANY};
 use super::node::halves;
 
 /// The part of a triangle inside a cell.
@@ -26,13 +25,13 @@ impl Part {
 
 /// All triangles, whole.
 pub(in super::super) fn parts(mesh: &Mesh) -> Vec<Part> {
-    (0..mesh.len() as u32)
-        .into_par_iter()
-        .map(|prim| Part {
+    parallel::map(mesh.len(), MANY, |i| {
+        let prim = i as u32;
+        Part {
             prim,
             bounds: mesh.triangle_bounds(prim),
-        })
-        .collect()
+        }
+    })
 }
 
 /// A plane across a cell.

@@ -15,7 +15,7 @@ use std::ops::Range;
 
 use super::super::super::bvh::{BinaryTree, Node};
 use super::super::super::items::LANES;
-use super::super::super::pages;
+use super::super::super::parallel;
 use super::super::super::sah::half_area;
 
 /// Cost of visiting a node.
@@ -218,7 +218,7 @@ fn spread(area: f32, left: &Spread, right: &Spread) -> Spread {
 pub(super) fn choices(tree: &BinaryTree) -> Vec<Choice> {
     let nodes = tree.nodes.as_slice();
     let planner = Planner::new(nodes);
-    let mut choices = pages::filled(nodes.len(), Choice::LEAF);
+    let mut choices = parallel::filled(nodes.len(), Choice::LEAF);
     let (root, below) = choices.split_at_mut(1);
     root[0] = planner.plan(Subtree::whole(nodes), below).choice;
     choices

@@ -250,7 +250,7 @@ pub enum BuildError {
 /// What a model predicts of a grid before it is built.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Prediction {
-    /// The predicted best n.
+    /// The predicted best n: what `--n auto` takes.
     pub n: u32,
     /// Least and greatest n whose predicted cost is within 5 % of the best: the plateau of ties.
     pub plateau: [u32; 2],

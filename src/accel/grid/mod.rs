@@ -65,7 +65,7 @@ pub(super) const ENTRY: AcceleratorEntry = AcceleratorEntry {
     ],
     control: false,
     resolution: Some(Resolution {
-        auto: |mesh, params| Model::new(mesh, Settings::read(params)).best().0,
+        auto: |mesh, params| Model::new(mesh, Settings::read(params)).auto().0,
         predict: |mesh, params, n| Model::new(mesh, Settings::read(params)).predict(n),
     }),
     peer: None,

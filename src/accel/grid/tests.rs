@@ -570,7 +570,7 @@ fn predictions_meet_the_counts_of_random_lines() {
 }
 
 #[test]
-fn the_best_n_is_the_least_of_the_model_and_lies_on_its_plateau() {
+fn the_best_n_is_the_least_of_the_model_and_auto_takes_the_coarsest_as_good() {
     for (name, mesh) in nasty() {
         for text in ["grid", "grid:mailbox=off:shape=cubic"] {
             let model = Model::new(&mesh, settings(text));
@@ -584,6 +584,11 @@ fn the_best_n_is_the_least_of_the_model_and_lies_on_its_plateau() {
                 (first..=last).all(|n| model.cost(n) <= 1.05 * model.cost(best)),
                 "{name}"
             );
+            let (auto, plateau) = model.auto();
+            assert_eq!(plateau, [first, last], "{name}");
+            let is_as_good = |n: u32| model.cost(n) <= 1.02 * model.cost(best);
+            assert!((auto..=best).all(is_as_good), "{name}");
+            assert!(auto == 1 || !is_as_good(auto - 1), "{name}");
         }
     }
 }

@@ -135,10 +135,9 @@ pub fn picked(accel: &Choice, mesh: &Mesh) -> Option<String> {
 fn large_boxes(mesh: &Mesh) -> f64 {
     let scene = half_area(&mesh.bounds());
     let least = LARGE * scene / mesh.len() as f64;
-    let sums = parallel::map(mesh.len().div_ceil(CHUNK), 1, |chunk| {
-        let end = ((chunk + 1) * CHUNK).min(mesh.len()) as u32;
-        ((chunk * CHUNK) as u32..end)
-            .map(|prim| half_area(&mesh.triangle_bounds(prim)))
+    let sums = parallel::ranges(mesh.len(), CHUNK, |prims| {
+        prims
+            .map(|prim| half_area(&mesh.triangle_bounds(prim as u32)))
             .filter(|area| *area > least)
             .sum::<f64>()
     });

@@ -14,6 +14,7 @@
 )]
 
 use std::mem::MaybeUninit;
+use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
 use rayon::prelude::*;
@@ -43,11 +44,11 @@ pub(super) fn extend<T: Send>(
     make: impl Fn(usize) -> T + Sync,
 ) {
     all.reserve_exact(count);
+    let grain = grain.max(1);
     let room = &mut all.spare_capacity_mut()[..count];
-    let parts: Vec<Mutex<&mut [MaybeUninit<T>]>> =
-        room.chunks_mut(grain.max(1)).map(Mutex::new).collect();
+    let parts: Vec<Mutex<&mut [MaybeUninit<T>]>> = room.chunks_mut(grain).map(Mutex::new).collect();
     each(parts.len(), &|part| {
-        let first = part * grain.max(1);
+        let first = part * grain;
         let mut places = parts[part].lock().unwrap_or_else(PoisonError::into_inner);
         for (i, place) in places.iter_mut().enumerate() {
             place.write(make(first + i));
@@ -64,9 +65,18 @@ pub(super) fn chunks<T: Sync, U: Send>(
     size: usize,
     work: impl Fn(&[T]) -> U + Sync,
 ) -> Vec<U> {
-    map(slice.len().div_ceil(size), 1, |chunk| {
+    ranges(slice.len(), size, |range| work(&slice[range]))
+}
+
+/// As [`chunks`], of the numbers below `count`.
+pub(super) fn ranges<U: Send>(
+    count: usize,
+    size: usize,
+    work: impl Fn(Range<usize>) -> U + Sync,
+) -> Vec<U> {
+    map(count.div_ceil(size), 1, |chunk| {
         let first = chunk * size;
-        work(&slice[first..slice.len().min(first + size)])
+        work(first..count.min(first + size))
     })
 }
 

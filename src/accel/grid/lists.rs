@@ -174,8 +174,7 @@ fn chunks<T: Overlap>(
     most: u64,
 ) -> Option<Vec<Chunk>> {
     let total = AtomicU64::new(0);
-    let chunks = parallel::map(mesh.len().div_ceil(CHUNK), 1, |chunk| {
-        let prims = chunk * CHUNK..((chunk + 1) * CHUNK).min(mesh.len());
+    let chunks = parallel::ranges(mesh.len(), CHUNK, |prims| {
         let mut found = Vec::with_capacity(2 * prims.len());
         let mut told = 0;
         for prim in prims {

@@ -137,6 +137,8 @@ fn plan(options: &Options, share: &Share) -> Result<Plan, String> {
             .map(str::to_owned)
             .to_vec();
     }
+    // Whether two threads get a core each changes within a second where cores are shared with others: longer than that.
+    let longer = if share.threads.len() > 1 { 4 } else { 1 };
     let kernels = share.kernels.iter();
     let kernels = kernels.map(|name| kernel::parse(name).map_err(|e| e.to_string()));
     Ok(Plan {
@@ -151,6 +153,9 @@ fn plan(options: &Options, share: &Share) -> Result<Plan, String> {
         budget: Budget {
             // Whoever is slow, all get the same rays, and those of a picture stay neighbours.
             whole_sets: true,
+            min_samples: longer * options.budget.min_samples,
+            max_samples: longer * options.budget.max_samples,
+            run_seconds: longer as f64 * options.budget.run_seconds,
             ..options.budget
         },
         // All structures on the same rays must stand in memory together to be sampled in turn.

@@ -82,6 +82,7 @@ impl Config {
             self.n
                 .unwrap_or_else(|| (r.auto)(&scene.mesh, &self.accel.params))
         });
+        lab::warm_up();
         let start = Instant::now();
         let accel = accel::build(
             &scene.mesh,

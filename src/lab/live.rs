@@ -119,6 +119,11 @@ impl Live {
         Ok(live)
     }
 
+    /// Threads that it is timed on.
+    pub fn threads(&self) -> usize {
+        self.record.config.threads
+    }
+
     /// The structure.
     pub fn accel(&self) -> &dyn Accelerator {
         &*self.accel
@@ -215,6 +220,7 @@ fn build(
                 .map_err(|why| why.to_string())
         })
     };
+    pool.install(machine::warm_up);
     let (mut accel, first) = once()?;
     let mut times = vec![first];
     let builds = match first {

@@ -1,7 +1,9 @@
-//! What the machine gives a sweep: thread pools, and reasons to distrust its clock.
+//! What the machine gives a sweep: thread pools, cores that are awake, and reasons to distrust its clock.
 
 use std::collections::BTreeMap;
 use std::thread::available_parallelism;
+use std::time::{Duration, Instant};
+use std::{hint, mem};
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use sysinfo::System;
@@ -52,6 +54,50 @@ pub fn cores() -> usize {
     available_parallelism().map_or(1, usize::from)
 }
 
+/// How long threads work before several of them are timed.
+///
+/// Cores that idled take a while to come to full speed, those of a virtual machine above all, whose host first finds places
+/// for them. Builds of `bvh-wide` over the Stanford bunny with two threads, after one of two cores had idled for a tenth of a
+/// second: at once 10.0 ms (median; 13.1 the slowest tenth), after 5 to 10 ms of work 14 to 16 ms (18 to 19), after 20 ms 10.0
+/// (12.6), after 40 to 150 ms 9.6 to 9.7 (11.1 to 11.6).
+const WARM_UP: Duration = Duration::from_millis(50);
+
+/// Keeps the threads of the current pool at work for a while, so that what is timed next has all their cores at full speed.
+///
+/// One thread alone has its core already: it has just called this.
+pub fn warm_up() {
+    if rayon::current_num_threads() > 1 {
+        let end = Instant::now() + WARM_UP;
+        rayon::broadcast(|_| {
+            while Instant::now() < end {
+                hint::spin_loop();
+            }
+        });
+    }
+}
+
+/// Whether the cores for what is timed next are awake.
+#[derive(Default)]
+pub(super) struct Awake {
+    /// Threads of what was timed last.
+    threads: usize,
+}
+
+impl Awake {
+    /// Warms `pool` up, unless as many threads have just been timed.
+    pub fn ready(&mut self, pool: &ThreadPool) {
+        if self.lacks(pool.current_num_threads()) {
+            pool.install(warm_up);
+        }
+    }
+
+    /// Whether so many threads are more than were timed last; they are timed next.
+    fn lacks(&mut self, threads: usize) -> bool {
+        let before = mem::replace(&mut self.threads, threads);
+        threads > before
+    }
+}
+
 /// Why figures of runs with this many threads should be read with care, one sentence each.
 pub(super) fn warnings(threads: usize) -> Vec<String> {
     // Systems without a load average, like Windows, give no warning of load.
@@ -84,6 +130,21 @@ mod tests {
             assert_eq!(pools.of(threads).current_num_threads(), threads);
         }
         assert_eq!(pools.all().current_num_threads(), cores());
+    }
+
+    #[test]
+    fn several_threads_work_for_a_while_before_they_are_timed() {
+        let pools = Pools::new(&[1, 2]).unwrap();
+        let start = Instant::now();
+        pools.of(2).install(warm_up);
+        assert!(start.elapsed() >= WARM_UP);
+    }
+
+    #[test]
+    fn cores_are_woken_after_fewer_threads_only() {
+        let mut awake = Awake::default();
+        let lacks = [2, 2, 1, 1, 2, 8, 4].map(|threads| awake.lacks(threads));
+        assert_eq!(lacks, [true, false, false, false, true, true, false]);
     }
 
     #[test]

@@ -47,7 +47,7 @@ pub use control::Control;
 pub use error::LabError;
 pub use event::Event;
 pub use inspect::{InspectedHit, InspectedRay, InspectedTruth, Inspection, Step, Subject, inspect};
-pub use machine::cores;
+pub use machine::{cores, warm_up};
 pub use plan::{Budget, MAX_THREADS, Plan, RunConfig};
 pub use record::{Checksum, PerRay, RunRecord, Spread, StopReason};
 pub use resolutions::{NRule, parse_n_list};

@@ -1,8 +1,20 @@
 //! When sampling of a run stops, and what its samples give away about the measurement.
 
+use rand_core::Rng;
+use rand_pcg::Pcg32;
+
 use crate::stats::{self, Summary};
 
 use super::{Budget, StopReason};
+
+/// Puts the runs of a round into a random order (Fisher and Yates), those with fewer threads first.
+pub(super) fn order_round<T>(runs: &mut [T], random: &mut Pcg32, threads: impl Fn(&T) -> usize) {
+    for i in (1..runs.len()).rev() {
+        let pick = (u64::from(random.next_u32()) * (i as u64 + 1)) >> 32;
+        runs.swap(i, pick as usize);
+    }
+    runs.sort_by_key(threads);
+}
 
 /// How much longer than its budget a run may be sampled to get its fewest samples.
 const PATIENCE: f64 = 4.0;
@@ -92,6 +104,22 @@ mod tests {
 
     fn stop(speeds: &[f64], seconds: f64) -> Option<StopReason> {
         stop_reason(speeds, seconds, &BUDGET, 1)
+    }
+
+    #[test]
+    fn a_round_has_every_run_in_an_order_of_its_own_and_fewer_threads_first() {
+        let mut random = Pcg32::new(1, 1);
+        let runs: Vec<(usize, usize)> = (0..60).map(|i| (1 + i % 2, i)).collect();
+        let mut rounds = [runs.clone(), runs.clone()];
+        for round in &mut rounds {
+            order_round(round, &mut random, |run| run.0);
+            assert!(round.is_sorted_by_key(|run| run.0));
+            assert!(!round[..30].is_sorted() && !round[30..].is_sorted());
+            let mut all = round.clone();
+            all.sort_by_key(|run| run.1);
+            assert_eq!(all, runs);
+        }
+        assert_ne!(rounds[0], rounds[1]);
     }
 
     #[test]

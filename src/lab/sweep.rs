@@ -8,6 +8,8 @@
 //!             └─ rounds:  a sample of each run, in a new seeded random order; a run that is sampled enough leaves
 //! ```
 //!
+//! Within a round runs with fewer threads come first, so that the others' cores are woken once a round.
+//!
 //! **Source:** samples in random order: T. Mytkowicz et al., "Producing Wrong Data Without Doing Anything Obviously
 //! Wrong!", ASPLOS 2009; a slow stretch of the machine then falls on all configurations alike.
 //! **Differs:** structures of a group stand in memory together as long as they stay within the plan's memory limit, with
@@ -17,7 +19,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::time::Instant;
 
-use rand_core::Rng;
 use rand_pcg::Pcg32;
 
 use crate::oracle::Oracle;
@@ -28,8 +29,8 @@ use crate::trace::{self, RaySet};
 use super::estimate::Estimate;
 use super::judge::Judge;
 use super::live::{Live, Setting};
-use super::machine::Pools;
-use super::sampling::stop_reason;
+use super::machine::{Awake, Pools};
+use super::sampling::{order_round, stop_reason};
 use super::{Control, Event, LabError, Plan, RunConfig, RunRecord};
 
 /// How often a sample is taken again when something disturbed it.
@@ -262,13 +263,15 @@ impl Sweep<'_> {
 
     /// Takes samples of all runs in turn until each is sampled enough.
     fn sample(&mut self, mut live: Vec<Turn>) {
+        let mut awake = Awake::default();
         while !live.is_empty() {
-            self.shuffle(&mut live);
+            order_round(&mut live, &mut self.random, |turn| turn.run.threads());
             let mut turns: Vec<Option<Turn>> = live.into_iter().map(Some).collect();
             for turn in 0..turns.len() {
                 let Some(Turn { run, judge }) = &mut turns[turn] else {
                     continue;
                 };
+                awake.ready(self.pools.of(run.threads()));
                 let Some(speed) = self.take_sample(run, judge) else {
                     return;
                 };
@@ -299,7 +302,7 @@ impl Sweep<'_> {
 
     /// Takes one sample, again where something disturbed it; its speed, or `None` when the sweep is stopped.
     fn take_sample(&mut self, run: &mut Live, judge: &Judge) -> Option<f64> {
-        let pool = self.pools.of(run.record.config.threads);
+        let pool = self.pools.of(run.threads());
         for attempt in 0..=RETAKES {
             if !self.control.may_go_on() {
                 return None;
@@ -319,14 +322,6 @@ impl Sweep<'_> {
             }
         }
         None
-    }
-
-    /// Fisher and Yates.
-    fn shuffle<T>(&mut self, items: &mut [T]) {
-        for i in (1..items.len()).rev() {
-            let j = (u64::from(self.random.next_u32()) * (i as u64 + 1)) >> 32;
-            items.swap(i, j as usize);
-        }
     }
 
     fn finish(&mut self, record: RunRecord) {

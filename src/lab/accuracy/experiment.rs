@@ -3,14 +3,13 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use rand_core::Rng;
 use rand_pcg::Pcg32;
 
 use crate::accel::{self, AcceleratorEntry};
 use crate::lab::judge::Judge;
 use crate::lab::live::{Live, Setting};
-use crate::lab::machine::Pools;
-use crate::lab::sampling::stop_reason;
+use crate::lab::machine::{Awake, Pools};
+use crate::lab::sampling::{order_round, stop_reason};
 use crate::lab::{Control, Done, LabError, Plan, RunConfig, StopReason};
 use crate::oracle::Oracle;
 use crate::scene::{self, Scene};
@@ -244,17 +243,16 @@ impl Experiment<'_> {
     /// Takes a sample of each run in turn, in a new random order each round, until all are sampled enough.
     fn sample(&mut self, mut live: Vec<(Live, Accuracy)>) {
         let budget = &self.plan.budget;
+        let mut awake = Awake::default();
         while !live.is_empty() {
-            for i in (1..live.len()).rev() {
-                let pick = (u64::from(self.random.next_u32()) * (i as u64 + 1)) >> 32;
-                live.swap(i, pick as usize);
-            }
+            order_round(&mut live, &mut self.random, |(run, _)| run.threads());
             for (run, _) in &mut live {
                 if !self.control.may_go_on() {
                     return;
                 }
+                let pool = self.pools.of(run.threads());
+                awake.ready(pool);
                 self.control.set_sampling(true);
-                let pool = self.pools.of(run.record.config.threads);
                 let (speed, took) = run.time(pool, budget.sample_seconds);
                 self.control.set_sampling(false);
                 run.speeds.push(speed);

@@ -11,7 +11,8 @@
 //! are compiled out. Work is counted in a pass of its own; its answers must be those of the timed passes. Samples of all
 //! runs on the same rays of a scene are interleaved in seeded random order, whatever their kernels and threads, until the
 //! bootstrap interval of a run's median is narrow enough or its time is spent; the record says which. One pass before the
-//! first sample warms caches and is not kept; all samples are.
+//! first sample warms caches and is not kept; all samples are. Before several threads are timed, builds too, all of them work for
+//! 50 ms, so that their cores are awake.
 //!
 //! **Known biases.** Runs are interleaved, so each sample starts with the caches full of another structure: at 20 ms
 //! a sample that costs a few tenths of a percent. Repeated passes find a small ray set in the cache. The nominal cost that

@@ -85,7 +85,7 @@ pub fn occluded_counted(accel: &dyn Accelerator, rays: &[Ray]) -> (Vec<bool>, Ve
 }
 
 /// Calls `trace` for each batch, on all threads of the pool. With one thread rayon is not involved at all.
-fn each<A: Answers>(rays: &[Ray], answers: A, trace: impl Fn(&[Ray], A) + Sync) {
+fn each<R: Room>(rays: &[Ray], answers: R, trace: impl Fn(&[Ray], R) + Sync) {
     let threads = rayon::current_num_threads();
     let rest = Mutex::new(Rest::new(rays, answers, threads));
     let take = || rest.lock().unwrap_or_else(PoisonError::into_inner).next();
@@ -108,18 +108,18 @@ fn each<A: Answers>(rays: &[Ray], answers: A, trace: impl Fn(&[Ray], A) + Sync) 
 }
 
 /// Room for answers, one for each ray: a slice, or several side by side.
-trait Answers: Send + Default {
+trait Room: Send + Default {
     /// Those of the first `count` rays, and the others.
     fn split(self, count: usize) -> (Self, Self);
 }
 
-impl<T: Send> Answers for &mut [T] {
+impl<T: Send> Room for &mut [T] {
     fn split(self, count: usize) -> (Self, Self) {
         self.split_at_mut(count)
     }
 }
 
-impl<A: Answers, B: Answers> Answers for (A, B) {
+impl<A: Room, B: Room> Room for (A, B) {
     fn split(self, count: usize) -> (Self, Self) {
         let (first, rest) = (self.0.split(count), self.1.split(count));
         ((first.0, rest.0), (first.1, rest.1))
@@ -127,16 +127,16 @@ impl<A: Answers, B: Answers> Answers for (A, B) {
 }
 
 /// What no thread has taken yet. An iterator over batches.
-struct Rest<'a, A> {
+struct Rest<'a, R> {
     rays: &'a [Ray],
-    answers: A,
+    answers: R,
     threads: usize,
     /// Rays of the smallest batch.
     least: usize,
 }
 
-impl<'a, A> Rest<'a, A> {
-    fn new(rays: &'a [Ray], answers: A, threads: usize) -> Self {
+impl<'a, R> Rest<'a, R> {
+    fn new(rays: &'a [Ray], answers: R, threads: usize) -> Self {
         Self {
             rays,
             answers,
@@ -149,8 +149,8 @@ impl<'a, A> Rest<'a, A> {
     }
 }
 
-impl<'a, A: Answers> Iterator for Rest<'a, A> {
-    type Item = (&'a [Ray], A);
+impl<'a, R: Room> Iterator for Rest<'a, R> {
+    type Item = (&'a [Ray], R);
 
     /// About a third of a thread's share of what is left: a power of two, so that tiles of a picture stay whole.
     fn next(&mut self) -> Option<Self::Item> {

@@ -4,9 +4,10 @@
 use super::super::sah::{Costs, half_area};
 use super::{BinaryTree, Node};
 
-/// A step tests two boxes, which takes about as long as one triangle.
+/// A step tests two boxes, goes where it was not foreseen and takes about as long as two triangles. If it were one, the nodes of
+/// the bunny and the armadillo would be half as many again and take a fifth more memory, and primary and bounce rays be 3 % slower.
 pub(super) const COSTS: Costs = Costs {
-    step: 1.0,
+    step: 2.0,
     test: 1.0,
 };
 
